@@ -397,6 +397,33 @@ fn loads_of_the_wrong_sign_are_warned_of() {
 }
 
 #[test]
+fn loads_that_are_late_or_never_at_0_are_warned_of() {
+    let dir = Dir::new();
+    ramps(&dir);
+    let rows = dir.table("r.csv");
+    let warned = |late_rows: usize, offset_pa: f64| {
+        let mut text = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+        for (k, row) in rows.iter().enumerate() {
+            let load = |name: &str| number(&rows[k.saturating_sub(late_rows)], name) + offset_pa;
+            let noise = 1e-4 * (((k * 7919 + 31) * (k + 17)) % 2003) as f64 / 1001.0;
+            let [first, second] = ["VP1", "VP2"].map(|name| number(row, name) + noise);
+            text += &format!("{},{},{},{first},{second}\n", row["time_s"], load("pf1_Pa"), load("pf2_Pa"));
+        }
+        dir.write("moved.csv", text);
+        let answer = run(&dir, "fit", "moved.csv --free k_C,b_C --out f.json --json --no-figures").expect(0);
+        let delay_s = answer.json()["recordings"][0]["delay_s"][0].number();
+        (delay_s, answer.stderr)
+    };
+    let (delay_s, said) = warned(0, 0.0);
+    assert!(delay_s.abs() < 0.01 && !said.contains("clock") && !said.contains("rests at"), "{delay_s} {said}");
+    let (delay_s, said) = warned(4, 0.0);
+    assert!((-0.12..-0.04).contains(&delay_s), "{delay_s}");
+    assert!(said.contains("ms before what the loads would make of them: are both on one clock?"), "{said}");
+    let (_, said) = warned(0, 300.0);
+    assert!(said.contains("stays at exactly 300") || said.contains("rests at 300 Pa"), "{said}");
+}
+
+#[test]
 fn a_photodiode_that_some_recordings_lack_is_noted() {
     let dir = Dir::new();
     run(&dir, "simulate", "--static 0..9000/500 --out a.csv --no-figures").expect(0);

@@ -210,6 +210,62 @@ fn a_photograph_under_several_names_is_warned_of() {
     assert_eq!(used(&dir), ["a", "b", "c"], "which one it is nobody knows");
 }
 
+/// The drawn nail at a share of its brightness, with a pattern of its own, so that no two are alike.
+fn shaded(share: f64, seed: u32) -> image::RgbImage {
+    let mut nail = drawn_nail();
+    for (x, y, pixel) in nail.enumerate_pixels_mut() {
+        let own = ((x * 7 + y * 13 + seed * 31) % 11) as u8;
+        pixel.0 = pixel.0.map(|level| (share * f64::from(level)) as u8 + own);
+    }
+    nail
+}
+
+#[test]
+fn photographs_that_may_be_of_another_pose_are_named() {
+    let dir = Dir::new();
+    let mut rows = Vec::new();
+    for (k, (pose, subject)) in ["p", "q"].iter().flat_map(|pose| ["a", "b", "c"].map(|who| (*pose, who))).enumerate() {
+        shaded(1.0, k as u32).save(dir.place(&format!("set/{pose}/{subject}.png"))).expect("a picture");
+        // Each nail was drawn by hand: no two are alike.
+        let moved = |points: Vec<[f64; 2]>| points.iter().map(|[x, y]| [x + 0.05 * k as f64, *y]).collect::<Vec<_>>();
+        let shapes = [("nail", "polygon", moved(drawn_outline())), ("axis", "line", drawn_axis())];
+        dir.write(&format!("set/{pose}/{subject}.json"), labelme([160, 140], &shapes));
+        rows.push([format!("{pose}/{subject}.png"), subject.to_owned(), pose.to_owned()]);
+    }
+    let of = |rows: &[[String; 3]]| {
+        dir.write(
+            "set/photos.csv",
+            format!("file,subject,pose\n{}\n", rows.iter().map(|row| row.join(",")).collect::<Vec<_>>().join("\n")),
+        );
+        dir.lunula(&["photos", "set", "--out", "out"]).expect(0).stderr
+    };
+    let quiet = of(&rows);
+    assert!(!quiet.contains("warning"), "{quiet}");
+    let mut sorted = rows.clone();
+    sorted[2][2] = "q".to_owned();
+    sorted[5][2] = "p".to_owned();
+    let said = of(&sorted);
+    assert!(said.contains("q/c.png as c of p, p/c.png as c of q; was a column sorted by itself?"), "{said}");
+    let said = of(&rows[..5]);
+    assert!(said.contains("1 photograph(s) beside those that photos.csv names are not used"), "{said}");
+    let mut misspelt = rows.clone();
+    misspelt[..3].iter_mut().for_each(|row| row[2] = "flexion".to_owned());
+    misspelt.push(["q/a.png".to_owned(), "d".to_owned(), "flexoin".to_owned()]);
+    let said = of(&misspelt);
+    assert!(said.contains("pose `flexoin` has 1 photograph(s), and `flexion` 3: is it misspelt?"), "{said}");
+    assert!(said.contains("counted more than once: q/a.png as a of q and q/a.png as d of flexoin"), "{said}");
+    // An outline that was copied, a photograph that is far too dark, one that was cut off and made darker.
+    std::fs::copy(dir.path("set/p/b.json"), dir.path("set/q/b.json")).expect("a copy");
+    shaded(0.05, 7).save(dir.place("set/q/c.png")).expect("a picture");
+    let mut flat = shaded(1.0, 8);
+    flat.pixels_mut().for_each(|pixel| pixel.0 = pixel.0.map(|level| level.min(125)));
+    flat.save(dir.place("set/p/a.png")).expect("a picture");
+    let said = of(&rows);
+    assert!(said.contains("share one outline to the last digit: p/b.png and q/b.png"), "{said}");
+    assert!(said.contains("far brighter or darker than usual") && said.contains("q/c.png (5."), "{said}");
+    assert!(said.contains("1 of 6 nails are flat at their brightest, below full scale (p/a.png first"), "{said}");
+}
+
 #[test]
 fn a_manifest_s_faults_are_named_by_line() {
     let dir = good_set();

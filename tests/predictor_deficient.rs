@@ -124,6 +124,17 @@ fn a_force_that_is_cut_off_is_reported() {
 }
 
 #[test]
+fn a_force_that_rests_elsewhere_than_at_0_is_reported() {
+    let dir =
+        dir_with(&Recording::of(0..400).map("Fz_N", |k, v| if k % 100 < 40 { 0.12 + 1e-3 * v } else { v.min(-1.0) }));
+    let said = dir.train("a.csv", "force", "m.json", &[]).expect(0);
+    said.says("a.csv: Fz_N rests at 0.1").says("take so much away from all of it");
+    let dir = dir_with(&Recording::of(0..400).map("Fz_N", |k, v| if k % 100 < 40 { 1e-3 * v } else { v.min(-1.0) }));
+    let zeroed = dir.train("a.csv", "force", "m.json", &[]).expect(0);
+    assert!(!zeroed.stderr.contains("rests at"), "{}", zeroed.stderr);
+}
+
+#[test]
 fn a_saturated_photodiode_is_reported_and_rows_that_align_marks_are_left_out() {
     let cut = Recording::of(0..120).map("P4", |_, v| v.min(2.5));
     let count = cut.numbers("P4").iter().filter(|v| **v == 2.5).count();

@@ -32,6 +32,8 @@ pub struct CameraFigures {
     pub rms_px: f64,
     /// The standard deviation of a corner's coordinate, from what is left.
     pub corner_sd_px: f64,
+    /// How far what is left of neighbouring corners goes together, a correlation: about 0 of noise.
+    pub neighbours: f64,
     /// The standard error of an undistorted point, root mean square over the picture; none where the distortion was not
     /// measured but held at 0.
     pub undistorted_sd_px: Option<f64>,
@@ -134,6 +136,7 @@ pub(super) fn figures(fit: &Fit, views: &[View], covered: Covered, about: About)
         lens_sd: LensFigures::of(fit.sd()),
         rms_px: fit.rms_px,
         corner_sd_px: fit.corner_sd_px,
+        neighbours: fit.neighbours(about.board.columns),
         undistorted_sd_px: fit.measures_distortion().then(|| fit.undistorted_sd_px(about.size)).transpose()?,
         covered: covered.cells,
         reach: covered.reach,

@@ -190,3 +190,20 @@ fn standard_errors_are_opencvs_with_twice_the_points() {
         assert!((ratio / divisor.sqrt() - 1.0).abs() <= 1e-3, "{k}: {ratio}");
     }
 }
+
+/// Standard errors are those of noise; a board that is longer one way than it is said to be leaves what is none.
+#[test]
+fn what_is_no_noise_goes_together_in_neighbours() {
+    let points = BOARD.points_mm(20.0);
+    let longer: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [1.02 * x, *y, *z]).collect();
+    let (mut noise, mut least) = (0.0_f64, f64::INFINITY);
+    for seed in 0..10 {
+        let views = corners(&options(seed, 12), NOISE_PX);
+        let together =
+            |points: &[[f64; 3]]| fit(points, &views, SIZE, 5).unwrap().expect("a lens").neighbours(BOARD.columns);
+        noise = noise.max(together(&points).abs());
+        least = least.min(together(&longer));
+    }
+    eprintln!("noise at most {noise:.2}, longer by 2 % at least {least:.2}");
+    assert!(noise < 0.12 && least > 0.3, "{noise} {least}");
+}

@@ -9,6 +9,7 @@ use super::lines::order::{median_step_s, short};
 use super::naming::columns::photodiodes_not_read;
 use super::naming::role::Role;
 use super::piles;
+use super::rest::{self, Pressing, without_spikes};
 use crate::median::median_of;
 
 /// Below so many samples nothing is said of values.
@@ -30,15 +31,16 @@ const MOST_GLITCHES: usize = 3;
 const SHARE_OF_GLITCHES: f64 = 0.0005;
 /// Blocks of rows of one time stamp are nearer together where a device sends them as they come, seconds (assumed).
 const BLOCK_S: f64 = 0.25;
-/// Samples left out at either end: spikes (assumed).
-const SPIKES: f64 = 0.005;
 /// More than a finger presses, newtons (assumed; norms of the strength of pinches: Mathiowetz et al., Archives of
 /// Physical Medicine and Rehabilitation 66(2), 1985).
 const MOST_N: f64 = 200.0;
-/// An offset that is forgiven, newtons.
+/// An offset that is forgiven, newtons: of a force that may pull, of one that rests.
 const OFFSET_N: f64 = 0.5;
-/// How much further than it presses a finger may seem to pull (assumed).
+const RESTS_N: f64 = 0.02;
+/// How much further than it presses a finger may seem to pull (assumed): from the first on the sign is another, from
+/// the second on the force.
 pub(crate) const PULLED: f64 = 2.0;
+const PULLS: f64 = 0.25;
 
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
@@ -76,15 +78,6 @@ pub(crate) fn blocks(time_s: &[f64]) -> Option<String> {
             short(block_s)
         )
     })
-}
-
-/// The least and the greatest of the values that are known, but for spikes; of none 0.
-pub(crate) fn without_spikes(values: &[f64]) -> [f64; 2] {
-    let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    let Some(last) = known.len().checked_sub(1) else { return [0.0; 2] };
-    let spikes = (SPIKES * known.len() as f64) as usize;
-    // Logs are long, and need not be sorted whole. A negated 0 is written as 0.
-    [spikes, last - spikes].map(|rank| *known.select_nth_unstable_by(rank, f64::total_cmp).1 + 0.0)
 }
 
 /// What to say of a table's columns, known by name: photodiodes that go up and down from row to row, forces that no
@@ -175,6 +168,11 @@ fn not_zeroed(columns: &[(&str, &[f64])]) -> Vec<String> {
     columns.iter().filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N")).filter_map(of).collect()
 }
 
+/// What to say of a finger's force on the surface that rests elsewhere than at 0.
+pub(crate) fn resting(name: &str, forces_n: &[f64]) -> Option<String> {
+    rest::not_at_zero(name, "N", RESTS_N, forces_n, Pressing::Negative)
+}
+
 /// What to say of a recording's columns, those that are forces.
 pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
     let columns: Vec<(&str, &[f64])> = columns.filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N" | "Fz_N")).collect();
@@ -195,6 +193,13 @@ pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) ->
                 "{name} goes from {least:.3} to {greatest:.3} N, as if the finger pulled: pressing is negative. Where \
                  these are forces of the surface on the finger, negate Fx_N, Fy_N and Fz_N; where the transducer was \
                  not zeroed, take its offset away"
+            ));
+        } else if let Some(rests) = resting(name, values).filter(|_| name == "Fz_N") {
+            doubts.push(rests);
+        } else if name == "Fz_N" && greatest > OFFSET_N && greatest > -PULLS * least {
+            doubts.push(format!(
+                "{name} goes from {least:.3} to {greatest:.3} N, and a finger that presses hardly pulls: is it the \
+                 column of another force, or was the transducer not zeroed?"
             ));
         }
     }
@@ -304,8 +309,11 @@ mod tests {
             forces(std::iter::once((name, &values[..])))
         };
         let doubted = |name: &str, value: &dyn Fn(usize) -> f64| of(name, 400, value).join(" ");
-        for fine in [&press as &dyn Fn(usize) -> f64, &|k| press(k) + 1.0, &|_| 0.1, &|k| 20.0 * press(k)] {
+        for fine in [&press as &dyn Fn(usize) -> f64, &|_| 0.01, &|k| 20.0 * press(k)] {
             assert_eq!(doubted("Fz_N", fine), "");
+        }
+        for rests in [&|k| press(k) + 1.0, &|_| 0.1 as f64] as [&dyn Fn(usize) -> f64; 2] {
+            assert!(doubted("Fz_N", rests).starts_with("Fz_N rests at "), "{}", doubted("Fz_N", rests));
         }
         // Spikes and missing values are no presses.
         assert_eq!(doubted("Fz_N", &|k| if k % 300 == 7 { 1e9 } else { press(k) }), "");

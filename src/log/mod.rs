@@ -26,6 +26,7 @@ mod lines;
 mod naming;
 mod reading;
 mod request;
+pub(crate) mod rest;
 #[cfg(test)]
 mod tests;
 

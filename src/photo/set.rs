@@ -7,7 +7,7 @@
 //! used, each with its place; the others go on. A subject counts once per pose, so subjects that a pose has twice are
 //! all left out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
@@ -111,6 +111,8 @@ pub struct PhotoSet {
     pub photos: Vec<Photo>,
     /// Entries left out, sorted.
     pub faults: Vec<SetFault>,
+    /// Photographs beside those that a manifest names, sorted.
+    pub unlisted: Vec<String>,
 }
 
 impl PhotoSet {
@@ -120,7 +122,7 @@ impl PhotoSet {
     /// [`SetError`] where there is no list: folder or manifest unreadable, or nothing in it.
     pub fn open(folder: &Path, apart: &[&Path]) -> Result<Self, SetError> {
         let manifest = folder.join("photos.csv");
-        let mut set = Self { folder: folder.to_owned(), photos: Vec::new(), faults: Vec::new() };
+        let mut set = Self { folder: folder.to_owned(), photos: Vec::new(), faults: Vec::new(), unlisted: Vec::new() };
         if manifest.is_file() {
             set.read_manifest(&manifest)?
         } else {
@@ -154,7 +156,7 @@ impl PhotoSet {
     /// A set of photographs that are known one by one; those that can't be used are among its faults.
     #[must_use]
     pub fn of(photos: Vec<Photo>) -> Self {
-        let mut set = Self { folder: PathBuf::new(), photos: Vec::new(), faults: Vec::new() };
+        let mut set = Self { folder: PathBuf::new(), photos: Vec::new(), faults: Vec::new(), unlisted: Vec::new() };
         for photo in photos {
             match name_fault("subject", &photo.subject).or_else(|| name_fault("pose", &photo.pose)) {
                 Some(what) => set.fault(photo.file, what),
@@ -259,11 +261,13 @@ impl PhotoSet {
             )));
         }
         let (outline, tone) = (column("outline"), column("tone"));
+        let mut named: BTreeSet<PathBuf> = BTreeSet::new();
         for record in reader.records() {
             let record = record.map_err(|e| wrong(e.to_string()))?;
             let place = format!("photos.csv, line {}", record.position().map_or(0, csv::Position::line));
             let cell = |at: usize| record.get(at).unwrap_or_default().to_owned();
             let (file, subject, pose) = (cell(file), cell(subject), cell(pose));
+            named.insert(self.folder.join(&file));
             if let Some(what) = row_fault(&self.folder, &file, &subject, &pose) {
                 self.fault(place, what);
                 continue;
@@ -274,8 +278,14 @@ impl PhotoSet {
                 continue;
             }
             let tone = tone.map(cell).filter(|tone| !tone.is_empty());
+            named.extend(outline.clone());
             self.photos.push(Photo { pose, subject, path: self.folder.join(&file), file, outline, tone });
         }
+        let folders: BTreeSet<&Path> = named.iter().filter_map(|path| path.parent()).collect();
+        let beside = folders.into_iter().filter_map(|folder| Some(list(folder).ok()?.0)).flatten();
+        let unlisted = beside.filter(|path| is_picture(path) && !named.contains(path));
+        self.unlisted = unlisted.map(|path| path.display().to_string()).collect();
+        self.unlisted.sort();
         Ok(())
     }
 
@@ -316,7 +326,7 @@ impl PhotoSet {
 
     /// Nail 2 of subject `a` is written as `a-2.png`: another subject of that name could overwrite it.
     fn leave_out_clashing_names(&mut self) {
-        let names: std::collections::BTreeSet<(String, String)> =
+        let names: BTreeSet<(String, String)> =
             self.photos.iter().map(|p| (p.pose.clone(), p.subject.clone())).collect();
         let clashes = |photo: &Photo| {
             let (stem, number) = photo.subject.rsplit_once('-')?;

@@ -27,7 +27,7 @@ pub use equilibrium::{
     MapRow, Stability, Turn, TurnKind, equilibria, load_curve, rest, stability_row,
 };
 pub use fit::{
-    Bound, Bounds, Calibrated, Calibration, Combination, Course, Estimate, FitFault, FitOptions, FitResult,
+    Bound, Bounds, Calibrated, Calibration, Combination, Course, Delay, Estimate, FitFault, FitOptions, FitResult,
     FitStatistics, Free, Group, Recording, Rival, Stop, Trace, fit, noise, time_constant,
 };
 pub use live::{Live, LiveFault, LiveStatistics};

@@ -25,7 +25,12 @@ pub enum StateFault {
          vessels only"
     )]
     Closed { site: Site, lumen: f64 },
+    #[error("{site} is {lumen:.3e} times its nominal diameter wide in this state; displacements are in metres")]
+    Wide { site: Site, lumen: f64 },
 }
+
+/// No vessel is so many times as wide as its nominal diameter (assumed).
+const WIDE: f64 = 100.0;
 
 impl State {
     /// The state in which no wall is displaced (`x = 0`) and none moves. It is not the state at rest: pressed by the
@@ -36,7 +41,7 @@ impl State {
     }
 
     /// From displacements (m) and velocities (m/s) of the walls. An error where a number is missing, not finite, or
-    /// closes a vessel.
+    /// closes a vessel, or opens it as no vessel is.
     pub fn from_metres(
         parameters: &Parameters,
         displacements_m: &[f64],
@@ -56,7 +61,10 @@ impl State {
             rates: scaled(velocities_mps),
         };
         state.check()?;
-        Ok(state)
+        match (0..walls).find(|&j| state.lumens[j] > WIDE) {
+            Some(j) => Err(StateFault::Wide { site: Site::of_wall(j, walls - 1), lumen: state.lumens[j] }),
+            None => Ok(state),
+        }
     }
 
     /// Whether all values are finite and all vessels open. An error names the first that is not.
@@ -115,6 +123,8 @@ mod tests {
             StateFault::Closed { site: Site::Capillary(1), lumen: 0.0 }
         );
         assert_eq!(fault_of(&[0.0, 0.0, -2e-4], &[0.0; 3]), StateFault::Closed { site: Site::Vein, lumen: -1.0 });
+        // Micrometres.
+        assert!(matches!(fault_of(&[9.0, 5.0, 1e2], &[0.0; 3]), StateFault::Wide { site: Site::Capillary(0), .. }));
         assert!(matches!(
             fault_of(&[f64::NAN, 0.0, 0.0], &[0.0; 3]),
             StateFault::NotFinite { site: Site::Capillary(0), .. }

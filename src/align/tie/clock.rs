@@ -29,7 +29,7 @@ pub(crate) fn by_clock(
 ) -> Result<Tie, String> {
     let mut tie = by_line(posture)?;
     if let Some(clock) = &posture.clock {
-        as_fitted(posture, clock, &mut tie);
+        as_fitted(posture, clock, &mut tie)?;
     } else {
         tie.warnings.push(ONLY_A_LINE.to_owned());
     }
@@ -76,10 +76,25 @@ const ONLY_A_LINE: &str = "the table has the clock's line but not what was read 
                            is the line's \
                            scatter, missing where there is none, and does not count what the clock's digits leave open";
 
+/// Times of a line that are further off it than this, seconds, or than so many standard errors, were changed since it
+/// was fitted.
+const CHANGED_S: f64 = 0.01;
+const CHANGED_SDS: f64 = 3.0;
+
 /// Puts the errors of the fit that made the table in the place of the line's scatter.
-fn as_fitted(posture: &Posture, clock: &ClockColumns, tie: &mut Tie) {
+///
+/// # Errors
+/// Times that are on no line, in words: errors of a fit are none of theirs.
+fn as_fitted(posture: &Posture, clock: &ClockColumns, tie: &mut Tie) -> Result<(), String> {
     let rows: Vec<usize> = (0..posture.time_s.len()).filter(|&row| clock.sd_s[row].is_finite()).collect();
-    let [Some(&first), Some(&last)] = [rows.first(), rows.last()] else { return };
+    let [Some(&first), Some(&last)] = [rows.first(), rows.last()] else { return Ok(()) };
+    let scatter_s = tie.timebase.at_reference_sd_s;
+    if scatter_s > CHANGED_S.max(CHANGED_SDS * clock.sd_s[rows[rows.len() / 2]]) {
+        return Err(format!(
+            "`clock_s` scatters by {scatter_s:.3} s about a line, and `lunula posture` writes a line: was the table \
+             rounded, sorted or put together by another program? Take the table that `lunula posture` wrote"
+        ));
+    }
     let errors = [first, rows[rows.len() / 2], last].map(|row| [posture.time_s[row], clock.sd_s[row]]);
     tie.timebase = tie.timebase.with_errors(errors);
     tie.offset_interval_s = (posture.time_s[first] == 0.0).then(|| [clock.low_s[first], clock.high_s[first]]);
@@ -93,6 +108,7 @@ fn as_fitted(posture: &Posture, clock: &ClockColumns, tie: &mut Tie) {
     let squares: f64 = residuals_s.iter().map(|p| p[1] * p[1]).sum();
     tie.residual_rms_s = (tie.frames_read > 0).then(|| (squares / tie.frames_read as f64).sqrt());
     tie.residuals_s = residuals_s;
+    Ok(())
 }
 
 /// Times of a fitted line are off it by their last decimal, seconds.
@@ -206,6 +222,16 @@ mod tests {
         assert_eq!((tie.frames_read, tie.frames_abstained, tie.warnings.len() + tie.notes.len()), (600, 0, 0));
         // Even steps of a third of a tenth about its middle.
         assert!(tie.residuals_s.iter().all(|p| p[1].abs() <= 0.05 + ROUNDING) && tie.residual_rms_s.unwrap() > 0.02);
+    }
+
+    #[test]
+    fn times_that_were_rounded_since_the_fit_are_refused() {
+        let mut table = table();
+        table.clock_s.iter_mut().for_each(|clock_s| *clock_s = (100.0 * *clock_s).round() / 100.0);
+        assert!(by_clock(&table, &[60.0, 100.0], None, None).is_ok(), "hundredths are within the errors");
+        table.clock_s.iter_mut().for_each(|clock_s| *clock_s = clock_s.floor());
+        let why = by_clock(&table, &[60.0, 100.0], None, None).unwrap_err();
+        assert!(why.contains("`clock_s` scatters by 0.3") && why.contains("rounded"), "{why}");
     }
 
     #[test]

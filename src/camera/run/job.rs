@@ -77,7 +77,7 @@ pub fn run(
     let counts = Some([files.len() - videos, videos]);
     let mut report = Report {
         left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
-        warnings: [copied, warnings(&fitted, &views, covered), held].concat(),
+        warnings: [copied, warnings(&fitted, &views, covered, options.board), held].concat(),
         notes,
         failed,
         pictures,

@@ -7,7 +7,7 @@ use lunula_hemodynamics::{Load, Parameters};
 
 use super::{CurveFigures, CurveOptions, CurveOutputs, CurveReport, figure, table};
 use crate::files::{Places, beside};
-use crate::hemodynamics::given::SUCTION;
+use crate::hemodynamics::given::{SUCTION, hardly_flows, hardly_pressed};
 use crate::hemodynamics::solve::{Curve, along};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::job::{Report, Watch};
@@ -125,6 +125,7 @@ pub fn curve(
     if range.loads.from_pa < 0.0 {
         report.notes.push(format!("--static: loads begin at {} Pa: {SUCTION}", range.loads.from_pa));
     }
+    report.warnings.extend(hardly_pressed(&[&loads_pa]).into_iter().chain(hardly_flows(blood_pa)));
     if nothing_open {
         report.warnings.push("no load has an equilibrium with open vessels: nothing is drawn".to_owned());
     }

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use lunula_hemodynamics::{Calibration, FitOptions as Settings, FitResult, Free, Parameters, Recording, fit as search};
+use lunula_hemodynamics::{
+    Calibration, Delay, FitOptions as Settings, FitResult, Free, Parameters, Recording, fit as search,
+};
 
 use super::parameter_files::{parameter_files, parameter_paths};
 use super::recording::{ReadRecording, photodiodes, read, signs};
@@ -255,6 +257,7 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
         ));
     }
     warnings.extend(signs::of_scalings(result, recordings));
+    warnings.extend(recordings.iter().zip(&result.delays).filter_map(|(read, delay)| delayed((*delay)?, &read.name)));
     warnings.extend(copies(recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()))));
     for read in recordings {
         warnings.extend(read.warnings.iter().map(|warning| format!("{}: {warning}", read.name)));
@@ -266,6 +269,20 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
         }
     }
     warnings
+}
+
+/// What to say of a recording whose loads are on another clock than its photodiodes.
+fn delayed(delay: Delay, name: &str) -> Option<String> {
+    let order = if delay.by_s < 0.0 { "before" } else { "after" };
+    delay.is_clear().then(|| {
+        format!(
+            "{name}: photodiodes answer {:.0} +- {:.0} ms {order} what the loads would make of them: are both on one \
+             clock? 40 ms change a stiffness several times over, and no standard error includes it; give the loads the \
+             times at which they were taken",
+            1e3 * delay.by_s.abs(),
+            1e3 * delay.standard_error_s
+        )
+    })
 }
 
 /// How recordings were read, and what the picture leaves out.
@@ -318,6 +335,7 @@ fn recording_reports(
             .collect(),
         noise_v: read.recording.photodiodes.iter().map(|trace| trace.noise_v).collect(),
         noise: noises(&result.noises[k]),
+        delay_s: result.delays[k].map(|delay| [delay.by_s, delay.standard_error_s]),
     };
     recordings.iter().zip(curves).enumerate().map(one).collect()
 }

@@ -76,6 +76,8 @@ pub struct RecordingReport {
     pub noise_v: Vec<f64>,
     /// What that noise is, a photodiode each: white, or slow or a pulse too, their SDs in that of the white.
     pub noise: Vec<String>,
+    /// By how much its photodiodes come after its loads, s, and the standard error; none where nothing shows it.
+    pub delay_s: Option<[f64; 2]>,
 }
 
 /// What a fit found.

@@ -96,8 +96,40 @@ impl LoadOptions {
                 *place = load.clone();
             }
         }
+        if file.is_none() {
+            let given = [&self.pf1, &self.pf2].map(|load| load.as_ref().map_or(Vec::new(), values));
+            warnings.extend(hardly_pressed(&given.each_ref().map(Vec::as_slice)));
+        }
+        let greatest = |load: &Load| values(load).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        warnings.extend(hardly_flows([&loads.upstream, &loads.downstream].map(greatest)));
         Ok(ReadLoads { loads, known_s, warnings, notes })
     }
+}
+
+/// Values of a load that show how large it is, Pa.
+fn values(load: &Load) -> Vec<f64> {
+    let breaks = load.breakpoints().iter().flat_map(|&time_s| [load.before(time_s), load.at(time_s)]);
+    breaks.chain((0..SAMPLES).map(|k| load.at(SAMPLED_S * f64::from(k)))).collect()
+}
+
+/// Times at which a load without breakpoints is looked at: a pulse's, seconds.
+const SAMPLES: u32 = 40;
+const SAMPLED_S: f64 = 0.05;
+
+/// What to say of the blood's pressures, P_H and P_L at most, Pa.
+pub(in crate::hemodynamics) fn hardly_flows([upstream, downstream]: [f64; 2]) -> Option<String> {
+    if upstream < HARDLY_PA {
+        return Some(format!(
+            "the upstream pressure P_H is nowhere greater than {upstream} Pa, and a finger's blood has kilopascals: is \
+             it in kPa or mmHg? Write it in Pa"
+        ));
+    }
+    (downstream >= upstream).then(|| {
+        format!(
+            "the downstream pressure P_L reaches {downstream} Pa and the upstream one P_H {upstream} Pa: blood flows \
+             backwards; are they exchanged?"
+        )
+    })
 }
 
 /// Puts the columns of a table of loads into `loads`; returns its first and last time.

@@ -11,7 +11,7 @@ pub use model::ModelOptions;
 pub use start::Start;
 
 pub(super) use columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
-pub(super) use loads::{ReadLoads, SUCTION, hardly_pressed};
+pub(super) use loads::{ReadLoads, SUCTION, hardly_flows, hardly_pressed};
 pub(super) use model::read_parameters;
 pub(super) use params::{PARAMS, existing, of_foreseen, of_task};
 pub(super) use start::{read_state, state_columns};

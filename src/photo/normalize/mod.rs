@@ -39,6 +39,31 @@ pub struct Normalized {
     pub seen: Option<Vec<bool>>,
 }
 
+/// Of the levels of a normalized picture that are seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct Survey {
+    /// How many.
+    pub(crate) seen: u64,
+    /// Their sum.
+    pub(crate) sum: u64,
+    /// That of their squares.
+    pub(crate) squares: u64,
+    /// The greatest.
+    pub(crate) greatest: u16,
+    /// How many are there, to a tenth of a step of 8 bits.
+    pub(crate) at_greatest: u64,
+}
+
+impl Survey {
+    /// The mean, a fraction of full scale.
+    pub(crate) fn mean(&self) -> f64 {
+        self.sum as f64 / self.seen.max(1) as f64 / f64::from(FULL_SCALE)
+    }
+}
+
+/// A tenth of a step of 8 bits.
+const SAME_LEVEL: u16 = FULL_SCALE / 2550;
+
 impl Normalized {
     /// Fractions of full scale, row by row; NaN where the photograph does not show the place.
     pub fn values(&self) -> impl Iterator<Item = f32> + '_ {
@@ -69,6 +94,20 @@ impl Normalized {
             bright += usize::from(level >= AT_FULL_SCALE);
         }
         bright as f64 / all.max(1) as f64
+    }
+
+    /// What distinguishes it from other pictures, and shows a camera's end of range.
+    pub(crate) fn survey(&self) -> Survey {
+        let known = || (0..self.levels.len()).filter_map(|at| self.level(at));
+        let greatest = known().max().unwrap_or(0);
+        let mut survey = Survey { seen: 0, sum: 0, squares: 0, greatest, at_greatest: 0 };
+        for level in known() {
+            survey.seen += 1;
+            survey.sum += u64::from(level);
+            survey.squares += u64::from(level).pow(2);
+            survey.at_greatest += u64::from(greatest - level <= SAME_LEVEL);
+        }
+        survey
     }
 
     fn nowhere(size: usize) -> Self {

@@ -10,7 +10,7 @@ use crate::figure::{Sheet, Tile, TilePicture};
 use crate::files::{Staging, WriteError};
 use crate::input;
 use crate::photo::error::MergeError;
-use crate::photo::normalize::NailFrame;
+use crate::photo::normalize::{NailFrame, Survey};
 use crate::photo::outline::{Axis, Nail, Source};
 use crate::photo::pose::rank;
 use crate::photo::set::PhotoSet;
@@ -34,6 +34,8 @@ pub struct NailRow {
     pub normalized: Option<String>,
     /// The share of it at full scale; 0 where it was left out.
     pub at_full_scale: f64,
+    /// Of its normalized picture, where there is one.
+    pub(in crate::photo) survey: Option<Survey>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
 }
@@ -50,6 +52,7 @@ impl NailRow {
             axis: nail.axis,
             normalized: None,
             at_full_scale: 0.0,
+            survey: None,
             reason: String::new(),
         }
     }

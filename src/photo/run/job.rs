@@ -332,6 +332,7 @@ impl Work<'_> {
                 Ok(normalized) => {
                     let margin = self.options.normalization.margin;
                     row.at_full_scale = normalized.at_full_scale(margin);
+                    row.survey = Some(normalized.survey());
                     row.reason = partly(&normalized, row.at_full_scale, margin);
                     let is_large = row.frame.is_some_and(|frame| frame.width_px.min(frame.length_px) >= LEAST_SHARP_PX);
                     if row.source == Source::Detected && is_large {

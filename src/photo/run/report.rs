@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::doubts::doubts;
 use crate::figure::Page;
 use crate::files::{Staging, WriteError};
 use crate::input::copies;
@@ -208,6 +209,7 @@ impl<'a> Findings<'a> {
             .chain(self.unclear())
             .chain(self.blurred())
             .chain(self.overexposed())
+            .chain(doubts(self.set, &self.rows))
             .chain(twins("subjects", self.set.photos.iter().map(|photo| photo.subject.as_str())))
             .chain(twins("poses", self.set.photos.iter().map(|photo| photo.pose.as_str())))
             .collect()
@@ -317,6 +319,9 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     let all_grey = !found.colours.is_empty() && found.colours.values().all(|[colour, _]| *colour == 0);
     let Findings { set, options, has_maps, rows, failed, left_out, detects, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+    notes.extend(set.unlisted.first().map(|first| {
+        format!("{} photograph(s) beside those that photos.csv names are not used ({first} first)", set.unlisted.len())
+    }));
     notes.extend(one_subject(&poses).filter(|_| has_maps));
     let some_drawn = rows.iter().any(|row| row.source != Source::Detected);
     let used = || rows.iter().filter(|row| row.normalized.is_some());

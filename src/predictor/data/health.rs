@@ -75,7 +75,7 @@ pub(in crate::predictor) fn units<'a>(sets: impl IntoIterator<Item = &'a Dataset
 
 /// By how much photodiodes may seem to answer before what they answer to, and after it, seconds (assumed: blood takes
 /// 0.1 to 0.4 s, 4.3).
-const BEFORE_S: f64 = 0.25;
+const BEFORE_S: f64 = 0.15;
 const AFTER_S: f64 = 1.0;
 /// It is sure where the share that is left unexplained is so small, and so much less than with the times as they are:
 /// so many times, and by so much (assumed).

@@ -18,7 +18,7 @@ use crate::job::{Report, Watch};
 use crate::predictor::data::{DataFile, FileRows, Read, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::learning;
-use crate::predictor::merit::doubts::doubts;
+use crate::predictor::merit::doubts::{doubts, outside_cone};
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::merit::table::{MeritRows, merit_table};
 use crate::stages::{Stages, Step, left_out};
@@ -172,6 +172,7 @@ pub fn train(
     }
     warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
     warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
+    warnings.extend(predictor.cone().and_then(|cone| outside_cone(cone, read.data.y().view())));
     if let Some(held) = &validate {
         warnings.extend(crate::predictor::seen_in_training(&predictor, &held.data));
         warnings.extend(parts(&read.data, &held.data, "validate on"));

@@ -2,13 +2,15 @@
 //! and what they look like then, or much better with two columns exchanged; and, of answers that nothing was measured
 //! for, voltages that it was not trained on.
 
-use lunula_predictor::{Dataset, Difference, Mismatch, Predictor, exchanged};
-use ndarray::{Array2, ArrayView1};
+use lunula_predictor::{Dataset, Difference, FrictionCone, Mismatch, Predictor, exchanged};
+use ndarray::{Array2, ArrayView1, ArrayView2};
 
 /// The share of rows outside of what was trained on from which it is said (assumed).
 const OUTSIDE: f64 = 0.05;
 /// Of fewer rows, and of a target that varies by less of its own square (rounding), nothing is said.
 const ROWS: usize = 10;
+/// A force this far outside of a cone of friction is none of noise, newtons (assumed).
+const FAR_N: f64 = 0.1;
 const CONSTANT: f64 = 1e-24;
 /// Answers follow what was measured where they share so much of its variance (assumed) ...
 const FOLLOWS: f64 = 0.8;
@@ -39,6 +41,24 @@ pub(in crate::predictor) fn doubts(
     }
     doubts.extend(in_another_order(predictor, data, seen, values));
     doubts
+}
+
+/// What to say of forces that were measured outside of the cone into which predicted ones are brought.
+pub(in crate::predictor) fn outside_cone(cone: &FrictionCone, forces_n: ArrayView2<f64>) -> Option<String> {
+    let far = |force: &[f64; 3]| {
+        let gaps = cone.nearest(*force).into_iter().zip(force).map(|(near, own)| near - own);
+        gaps.map(|gap| gap * gap).sum::<f64>().sqrt() > FAR_N
+    };
+    let forces = forces_n.outer_iter().map(|row| [row[0], row[1], row[2]]);
+    let known: Vec<[f64; 3]> = forces.filter(|force| force.iter().all(|value| value.is_finite())).collect();
+    let outside = known.iter().filter(|force| far(force)).count();
+    (known.len() >= ROWS && outside as f64 > OUTSIDE * known.len() as f64).then(|| {
+        format!(
+            "{:.0} % of the measured forces lie outside of the cone of friction by more than {FAR_N} N, where no \
+             prediction can follow them: is --friction this surface's coefficient, or are signs or columns others?",
+            100.0 * outside as f64 / known.len() as f64
+        )
+    })
 }
 
 /// What to say of recordings whose columns stand in another order than those that a model was trained on.
@@ -107,6 +127,15 @@ mod tests {
     use ndarray::Array1;
 
     use super::*;
+
+    #[test]
+    fn forces_that_no_cone_holds_are_doubted() {
+        let slides = |k: usize| [0.5 * (0.2 * k as f64).sin(), 0.2, -1.0 - 0.01 * (k % 50) as f64];
+        let forces = Array2::from_shape_fn((200, 3), |(k, j)| slides(k)[j]);
+        let said = |mu: f64| outside_cone(&FrictionCone::new(mu).expect("a coefficient"), forces.view());
+        assert_eq!(said(0.8), None);
+        assert!(said(0.1).is_some_and(|said| said.contains("% of the measured forces lie outside")));
+    }
 
     #[test]
     fn what_goes_astray_says_what_it_looks_like() {

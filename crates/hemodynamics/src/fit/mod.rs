@@ -27,6 +27,7 @@ mod result;
 mod time_constant;
 
 pub use crate::fit::algebra::levenberg::Stop;
+pub use certainty::delay::Delay;
 pub use fault::FitFault;
 pub use free::{Bounds, Free};
 pub use options::{Calibration, FitOptions};
@@ -85,6 +86,7 @@ pub fn fit(
         noises: problem.noises(),
         singular_values_v: known.singular_values_v,
         undetermined: known.undetermined,
+        delays: known.delays,
         stop: found.stop,
         statistics: FitStatistics {
             starts,

@@ -253,6 +253,17 @@ impl<'a> Problem<'a> {
         self.channels.iter().map(squares).sum::<f64>() / freedom as f64
     }
 
+    pub(super) fn recordings(&self) -> usize {
+        self.recordings.len()
+    }
+
+    /// Derivatives of the signals (weighted) about a point as columns like its own.
+    pub(super) fn as_columns(&self, about: &Evaluation, derivatives: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let moved = vec![Vec::new(); derivatives.len()];
+        let (parameters, signals) = (about.parameters.clone(), about.signals.clone());
+        self.assemble(&about.at, parameters, signals, derivatives, &moved).columns
+    }
+
     /// From signals and their derivatives (weighted) to residuals and the derivatives of the fitted voltages.
     fn assemble(
         &self,

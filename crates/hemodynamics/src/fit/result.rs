@@ -1,6 +1,7 @@
 //! What a fit gives.
 
 use crate::fit::algebra::levenberg::Stop;
+use crate::fit::certainty::delay::Delay;
 use crate::fit::noise::Slow;
 use crate::parameters::{Parameters, Symbol};
 
@@ -43,6 +44,9 @@ pub struct FitResult {
     pub singular_values_v: Vec<f64>,
     /// Combinations of parameters that the data don't determine.
     pub undetermined: Vec<Combination>,
+    /// Of each recording by how much its photodiodes come after their loads; `None` in equilibrium, or where nothing
+    /// shows it.
+    pub delays: Vec<Option<Delay>>,
     /// Other minima, found from other starts, that these data don't separate from the best one, the nearest first.
     /// Standard errors know nothing of them.
     pub rivals: Vec<Rival>,

@@ -24,7 +24,7 @@ fn evenly() -> Vec<f64> {
 }
 
 /// With white noise, a pulse and waves of a part of each photodiode's swing.
-fn beating(recording: &Recording, times: &[f64], [white, pulse, waves]: [f64; 3], seed: u64) -> Recording {
+pub(crate) fn beating(recording: &Recording, times: &[f64], [white, pulse, waves]: [f64; 3], seed: u64) -> Recording {
     let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
     let hz = random.random_range(0.9..1.3);
     let [beat, wave] = [(); 2].map(|()| random.random_range(0.0..TAU));

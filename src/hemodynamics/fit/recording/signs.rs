@@ -7,10 +7,13 @@ use lunula_hemodynamics::FitResult;
 
 use super::ReadRecording;
 use crate::hemodynamics::given::{SUCTION, hardly_pressed};
-use crate::log::doubts::{self, PULLED, cut_off, without_spikes};
+use crate::log::doubts::{self, PULLED, cut_off};
+use crate::log::rest::{Pressing, not_at_zero, without_spikes};
 
 /// Pressures below this share of the recording's largest are noise or an offset (assumed).
 const NOISE: f64 = 0.05;
+/// A rest this near to 0, as a share of that, is at 0 (assumed).
+const RESTS: f64 = 0.01;
 /// So many standard errors below 0, a scaling is negative.
 const SURE: f64 = 3.0;
 
@@ -31,7 +34,8 @@ pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String
              offset away"
         )
     });
-    cut.into_iter().chain(said).collect()
+    let rests = if pulled || is_log { None } else { doubts::resting(name, forces_n) };
+    cut.into_iter().chain(said).chain(rests).collect()
 }
 
 /// What to say of pressures, Pa.
@@ -51,7 +55,9 @@ pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
         })
     };
     let cut = columns.into_iter().flat_map(|(name, pressures_pa)| cut_off(name, pressures_pa));
-    columns.into_iter().zip(ranges).filter_map(one).chain(hardly).chain(cut).collect()
+    let said: Vec<String> = columns.into_iter().zip(ranges).filter_map(one).chain(hardly).chain(cut).collect();
+    let rests = |(name, values): (&str, &[f64])| not_at_zero(name, "Pa", RESTS * largest, values, Pressing::Positive);
+    if said.is_empty() { columns.into_iter().filter_map(rests).collect() } else { said }
 }
 
 /// What to say of scalings: `V_1` is a photodiode's sensitivity, the LED's brightness and losses (equation 4), and no

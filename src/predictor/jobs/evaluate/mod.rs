@@ -22,7 +22,7 @@ use ndarray::{Array2, Axis};
 use crate::job::{Report, Watch};
 use crate::predictor::data::{DataFile, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
-use crate::predictor::merit::doubts::doubts;
+use crate::predictor::merit::doubts::{doubts, outside_cone};
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::options::choices::LEVEL;
 use crate::predictor::outputs::{FolderOutputs, end};
@@ -93,6 +93,7 @@ pub fn evaluate(
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
     warnings.extend(not_predicted(&predictor, &values)?);
     warnings.extend(doubts(&predictor, &read.data, &seen, &values));
+    warnings.extend(predictor.cone().and_then(|cone| outside_cone(cone, seen.y().view())));
     let half_width = predictor.intervals().map(|intervals| (intervals.half_width.clone(), intervals.level));
     let title = options.title.clone().unwrap_or_else(|| model.display().to_string());
     let shown = Predicted { title, data: seen.into_owned(), values, half_width };

@@ -5,6 +5,7 @@
 //! or where their noise leaves its logarithm uncertain by more than ln 10: the order of magnitude within which the
 //! parameters are known beforehand.
 
+pub(in crate::fit) mod delay;
 pub(in crate::fit) mod noise;
 pub(in crate::fit) mod profile;
 use super::free::TENFOLD;
@@ -36,6 +37,7 @@ pub(super) struct Certainty {
     pub(super) undetermined: Vec<Combination>,
     /// Of the coordinates; 0 for those at a bound.
     pub(super) covariance: Vec<Vec<f64>>,
+    pub(super) delays: Vec<Option<delay::Delay>>,
 }
 
 /// A direction that is not determined: weights of all coordinates, and the SD along it.
@@ -147,6 +149,7 @@ pub(super) fn certainty(problem: &Problem, best: &Evaluation) -> Certainty {
         singular_values_v: svd.values.iter().map(|value| value / (rows as f64).sqrt()).collect(),
         undetermined,
         covariance,
+        delays: delay::delays(problem, best, &inside, variance.sqrt()),
     }
 }
 

@@ -1,0 +1,186 @@
+//! Photographs that may be another pose's or another person's than the set says, or of another kind than the others.
+//!
+//! In: the set and what each nail's normalized picture and outline are. Out: warnings; nothing is left out. A person's
+//! mistakes are meant (a column sorted by itself, outlines copied with their folder, a photograph saved again), by
+//! which a map is another's: on phantoms its correlation with the true one falls from 1.0 to between 0.8 and -0.4.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::input::same_to_the_byte;
+use crate::median::median_of;
+use crate::photo::normalize::{AT_FULL_SCALE, FULL_SCALE, Survey};
+use crate::photo::outline::Source;
+use crate::photo::results::NailRow;
+use crate::photo::set::{Photo, PhotoSet};
+use crate::words::nearest;
+
+/// A nail so many times brighter or darker than the median of all is of another exposure or depth (assumed: skin tones
+/// differ by 3 in green, exposures of one set by 2).
+const TIMES: f64 = 5.0;
+/// The fewest nails that have a median.
+const NAILS: usize = 4;
+/// A picture with more than this share at its own greatest level, which is not full scale, was cut off there (119 nails
+/// of 26 real hands: 0.0035 at most; overexposed ones cut off at 240 or 250 of 255: 0.015 to 0.59).
+const CUT_OFF: f64 = 0.01;
+/// Photographs from which on a pose may be what another was meant to be.
+const USUAL: usize = 3;
+/// Names that a warning gives.
+const NAMES: usize = 3;
+
+/// What there is to say.
+pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
+    let nails: Vec<Used> = rows.iter().filter_map(|row| Used::of(set, row)).collect();
+    let doubts = [same_pictures(&nails), same_outlines(&nails), levels(&nails), cut_off(&nails), folders(set)];
+    doubts.into_iter().flatten().chain(misspelt(set)).collect()
+}
+
+/// A nail that was used.
+struct Used<'a> {
+    photo: &'a Photo,
+    row: &'a NailRow,
+    survey: Survey,
+}
+
+impl<'a> Used<'a> {
+    fn of(set: &'a PhotoSet, row: &'a NailRow) -> Option<Self> {
+        Some(Self { photo: &set.photos[row.photo], row, survey: row.survey? })
+    }
+}
+
+/// The first names of several, and how many more there are.
+fn some(names: &[String]) -> String {
+    let more = names.len().saturating_sub(NAMES);
+    let first = names[..names.len() - more].join(", ");
+    if more > 0 { format!("{first} and {more} more") } else { first }
+}
+
+fn as_listed(photo: &Photo) -> String {
+    format!("{} as {} of {}", photo.file, photo.subject, photo.pose)
+}
+
+/// Groups of nails of several photographs of the set that have something in common.
+fn alike<'a, 'b, K: Ord>(nails: &'b [Used<'a>], of: impl Fn(&Used<'a>) -> Option<K>) -> Vec<Vec<&'b Used<'a>>> {
+    let mut groups: BTreeMap<K, Vec<&Used>> = BTreeMap::new();
+    for nail in nails {
+        if let Some(key) = of(nail) {
+            groups.entry(key).or_default().push(nail);
+        }
+    }
+    let several = |group: &Vec<&Used>| group.iter().any(|nail| nail.row.photo != group[0].row.photo);
+    groups.into_values().filter(several).collect()
+}
+
+/// Photographs that are one, saved twice or listed twice: copies to the byte are said elsewhere.
+fn same_pictures(nails: &[Used]) -> Option<String> {
+    let has_detail = |nail: &Used| nail.survey.at_greatest < nail.survey.seen / 2;
+    let groups = alike(nails, |nail| has_detail(nail).then_some(nail.survey));
+    let is_said = |group: &Vec<&Used>| {
+        let paths: Vec<&Path> = group.iter().map(|nail| nail.photo.path.as_path()).collect();
+        let distinct = paths.iter().any(|path| *path != paths[0]);
+        distinct
+            && same_to_the_byte(paths.iter().map(|path| ((), *path)))
+                .first()
+                .is_some_and(|one| one.len() == paths.len())
+    };
+    let names: Vec<String> = groups
+        .iter()
+        .filter(|group| !is_said(group))
+        .map(|group| group.iter().map(|nail| as_listed(nail.photo)).collect::<Vec<_>>().join(" and "))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!("the same nail to the last digit is counted more than once: {}; keep the right one", some(&names))
+    })
+}
+
+/// Outlines that several photographs share: drawn for one of them.
+fn same_outlines(nails: &[Used]) -> Option<String> {
+    let drawn = |nail: &Used| {
+        let frame = nail.row.frame.filter(|_| nail.row.source != Source::Detected)?;
+        let figures = [frame.center_px[0], frame.center_px[1], frame.length_px, frame.width_px];
+        Some(figures.map(f64::to_bits))
+    };
+    let differ = |group: &Vec<&Used>| group.iter().any(|nail| nail.survey != group[0].survey);
+    let groups: Vec<_> = alike(nails, drawn).into_iter().filter(differ).collect();
+    let names: Vec<String> = groups
+        .iter()
+        .map(|group| group.iter().map(|nail| nail.photo.file.clone()).collect::<Vec<_>>().join(" and "))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "photographs share one outline to the last digit: {}; was it drawn on each of them? One that was copied \
+             from another pose or person shows another place of the finger",
+            some(&names)
+        )
+    })
+}
+
+/// Nails that are far brighter or darker than all others.
+fn levels(nails: &[Used]) -> Option<String> {
+    let usual = median_of(nails.iter().map(|nail| nail.survey.mean())).filter(|_| nails.len() >= NAILS)?;
+    let off = |nail: &&Used| !(usual / TIMES..=usual * TIMES).contains(&nail.survey.mean());
+    let names: Vec<String> = nails
+        .iter()
+        .filter(off)
+        .map(|nail| format!("{} ({:.1} %)", nail.photo.file, 100.0 * nail.survey.mean()))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "nails are far brighter or darker than usual, which is {:.1} % of full scale in green: {}; are these of \
+             another exposure, or of fewer bits kept in 16 (--white)? Maps average them with the others",
+            100.0 * usual,
+            some(&names)
+        )
+    })
+}
+
+/// Pictures that are flat at their brightest, below full scale: what was cut off was scaled down afterwards.
+fn cut_off(nails: &[Used]) -> Option<String> {
+    let share = |nail: &Used| nail.survey.at_greatest as f64 / nail.survey.seen.max(1) as f64;
+    let is_cut = |nail: &&Used| nail.survey.greatest < AT_FULL_SCALE && share(nail) > CUT_OFF;
+    let cut: Vec<&Used> = nails.iter().filter(is_cut).collect();
+    let first = cut.first()?;
+    Some(format!(
+        "{} of {} nails are flat at their brightest, below full scale ({} first: {:.0} % of it at exactly {:.1} %): \
+         overexposed, and made darker by a program afterwards? There the maps are too flat; take them again with less \
+         exposure",
+        cut.len(),
+        nails.len(),
+        first.photo.file,
+        100.0 * share(first),
+        100.0 * f64::from(first.survey.greatest) / f64::from(FULL_SCALE)
+    ))
+}
+
+/// Photographs in a folder that has the name of another pose.
+fn folders(set: &PhotoSet) -> Option<String> {
+    let poses = set.poses();
+    let folder = |photo: &Photo| photo.path.parent()?.file_name()?.to_str().map(str::to_owned);
+    let others = set
+        .photos
+        .iter()
+        .filter(|photo| folder(photo).is_some_and(|folder| folder != photo.pose && poses.contains(&folder.as_str())));
+    let names: Vec<String> = others.map(as_listed).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "photos.csv lists {} photograph(s) in the folder of one pose as another's: {}; was a column sorted by \
+             itself?",
+            names.len(),
+            some(&names)
+        )
+    })
+}
+
+/// Poses of one photograph with a name that is nearly another's.
+fn misspelt(set: &PhotoSet) -> Vec<String> {
+    let count = |pose: &str| set.photos.iter().filter(|photo| photo.pose == pose).count();
+    let (rare, usual): (Vec<&str>, Vec<&str>) = set.poses().into_iter().partition(|pose| count(pose) < USUAL);
+    let one = |pose: &&str| {
+        let meant = nearest(pose, &usual).filter(|meant| strsim::osa_distance(pose, meant) == 1)?;
+        let is_numbered = |name: &str| name.ends_with(|last: char| last.is_ascii_digit());
+        (!is_numbered(pose) || !is_numbered(meant)).then(|| {
+            format!("pose `{pose}` has {} photograph(s), and `{meant}` {}: is it misspelt?", count(pose), count(meant))
+        })
+    };
+    rare.iter().filter_map(one).collect()
+}
