@@ -24,7 +24,7 @@ impl Job for CameraOptions {
         ],
         &[Part::new("camera", CAMERA), Part::if_wanted(PICTURES, "camera-corners.png")],
     )
-    .revision(5);
+    .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = outputs(Path::new(""), demand);

@@ -54,7 +54,7 @@ impl Job for FitOptions {
                 Part::if_wanted(PICTURES, ""),
             ],
         )
-        .revision(5)
+        .revision(6)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

@@ -42,7 +42,7 @@ impl Job for SimulateOptions {
         ],
         &[Part::new("trajectory", TABLE), Part::if_wanted(PICTURES, "")],
     )
-    .revision(2);
+    .revision(3);
 
     fn checked(self) -> Result<Self, OptionFault> {
         if let Some(Start::File(path)) = &self.start {

@@ -61,7 +61,7 @@ impl Job for PhotosOptions {
         ],
         &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::if_wanted(PICTURES, "normalized")],
     )
-    .revision(13);
+    .revision(14);
 
     fn checked(mut self) -> Result<Self, OptionFault> {
         if self.channels {

@@ -33,8 +33,8 @@ pub struct Delay {
 }
 
 impl Delay {
-    /// Whether it is none of the noise: three standard errors, and 15 ms. Of 300 recordings on one clock, with pulse and
-    /// waves and parameters of another finger, none is (10 ms at most).
+    /// Whether it is none of the noise: three standard errors, and 15 ms. Of 300 recordings on one clock, with pulse
+    /// and waves and parameters of another finger, none is (10 ms at most).
     #[must_use]
     pub fn is_clear(&self) -> bool {
         self.by_s.abs() > (3.0 * self.standard_error_s).max(0.015)
