@@ -80,6 +80,16 @@ fn a_picture_turned_after_it_was_drawn_on_is_doubted() {
     assert!(doubted >= 6, "{doubted} of 8: {}", answer.stderr);
 }
 
+#[test]
+fn coordinates_that_a_program_wrote_as_row_and_column_are_doubted() {
+    let dir = close_ups();
+    redraw(&dir, |file| file.shapes.iter_mut().flat_map(|shape| &mut shape.points).for_each(|point| point.reverse()));
+    let answer = dir.lunula(&["photos", "scene/photos", "--out", "out"]);
+    assert!(matches!(answer.code, 1 | 2), "{}", answer.stderr);
+    let doubted = answer.stderr.lines().filter(|line| line.contains("with x and y exchanged")).count();
+    assert!(doubted >= 6, "{doubted} of 8: {}", answer.stderr);
+}
+
 /// Two nails painted white on a hand in grey, the ground black.
 fn painted_hand(skin: u8) -> GrayImage {
     let within = |x: u32, y: u32, centre: [f64; 2], half: [f64; 2]| {

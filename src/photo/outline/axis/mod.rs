@@ -334,7 +334,7 @@ pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis, Optio
     };
     let as_drawn: Vec<Option<f64>> =
         drawn.iter().map(|(outline, axis, fit)| fit.or_else(|| fits(outline, *axis))).collect();
-    let turns = if size[0] == size[1] { &TURNS[..] } else { &TURNS[..3] };
+    let turns = if size[0] == size[1] { &TURNS[..] } else { &TURNS[..4] };
     let gains = turns.iter().filter_map(|(name, turned)| {
         let gain = |((outline, axis, _), before): (&(&Outline, Axis, _), &Option<f64>)| {
             let last = [size[0] - 1.0, size[1] - 1.0];
@@ -351,14 +351,15 @@ pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis, Optio
 
 /// A point moved with a picture whose last column and row are given.
 type Turn = fn([f64; 2], [f64; 2]) -> [f64; 2];
-/// The turns that a picture may have had; the first three keep every picture's size.
+/// The turns that a picture may have had, and a program that writes rows and columns; the first four go with every
+/// picture's size.
 const TURNS: [(&str, Turn); 7] = [
     ("turned by 180 degrees", |[x, y], [right, bottom]| [right - x, bottom - y]),
     ("mirrored left to right", |[x, y], [right, _]| [right - x, y]),
     ("mirrored top to bottom", |[x, y], [_, bottom]| [x, bottom - y]),
+    ("with x and y exchanged (rows before columns?)", |[x, y], _| [y, x]),
     ("turned by 90 degrees clockwise", |[x, y], [_, bottom]| [bottom - y, x]),
     ("turned by 90 degrees counterclockwise", |[x, y], [right, _]| [y, right - x]),
-    ("mirrored along a diagonal", |[x, y], _| [y, x]),
     ("mirrored along a diagonal", |[x, y], [right, bottom]| [bottom - y, right - x]),
 ];
 
