@@ -21,6 +21,9 @@ use crate::nail::{Position, Positions};
 use crate::stages::{Stages, left_out};
 
 const REPORT: &str = "run.json";
+/// An error above this share of that of no photodiode at all is hardly one of any (assumed).
+const HARDLY: f64 = 0.95;
+
 /// The thesis' eight are drawn and judged where every candidate for one is this near to it, half widths (assumed: a
 /// cell of a grid of 16 x 16 reaches 0.11 from its middle to its corner).
 const NEAR: f64 = 0.25;
@@ -89,12 +92,18 @@ pub fn run(
     watch.go_on()?;
     let chosen = chosen(&given, &all, &solved, options)?;
     let of_none = all.cost(&[]);
-    let own = solved.iter().find(|one| one.method == Method::Best && one.k == chosen.k).and_then(|one| one.left_out);
-    if let Some(own) = own.filter(|own| own.error + own.se >= of_none) {
+    let best = solved.iter().find(|one| one.method == Method::Best && one.k == chosen.k);
+    if let Some(own) = best.and_then(|one| one.left_out).filter(|own| own.error + own.se >= of_none) {
         warnings.push(format!(
             "the places chosen may say nothing of who is left out: their error is {:.3} +- {:.3}, and {of_none} \
              without any photodiode",
             own.error, own.se
+        ));
+    } else if let Some(best) = best.filter(|best| best.error > HARDLY * of_none) {
+        warnings.push(format!(
+            "no places say much: the error of the best {} is {:.3}, and {of_none} without any photodiode; are the \
+             targets those of these readings, and is --noise in the readings' unit?",
+            chosen.k, best.error
         ));
     }
     let of_thesis = thesis.map(|(eight, _)| eight).unwrap_or_default();
