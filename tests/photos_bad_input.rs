@@ -260,9 +260,13 @@ fn photographs_that_may_be_of_another_pose_are_named() {
     let mut flat = shaded(1.0, 8);
     flat.pixels_mut().for_each(|pixel| pixel.0 = pixel.0.map(|level| level.min(125)));
     flat.save(dir.place("set/p/a.png")).expect("a picture");
+    let mut bgr = shaded(1.0, 9);
+    bgr.pixels_mut().for_each(|pixel| pixel.0.reverse());
+    bgr.save(dir.place("set/q/a.png")).expect("a picture");
     let said = of(&rows);
     assert!(said.contains("share one outline to the last digit: p/b.png and q/b.png"), "{said}");
     assert!(said.contains("far brighter or darker than usual") && said.contains("q/c.png (5."), "{said}");
+    assert!(said.contains("nail and skin are bluer than red in q/a.png: were red and blue exchanged"), "{said}");
     assert!(said.contains("1 of 6 nails are flat at their brightest, below full scale (p/a.png first"), "{said}");
 }
 

@@ -99,11 +99,11 @@ pub fn run(
              without any photodiode",
             own.error, own.se
         ));
-    } else if let Some(best) = best.filter(|best| best.error > HARDLY * of_none) {
+    } else if let Some(best) = best.filter(|best| best.choice.cost > HARDLY * of_none) {
         warnings.push(format!(
             "no places say much: the error of the best {} is {:.3}, and {of_none} without any photodiode; are the \
              targets those of these readings, and is --noise in the readings' unit?",
-            chosen.k, best.error
+            chosen.k, best.choice.cost
         ));
     }
     let of_thesis = thesis.map(|(eight, _)| eight).unwrap_or_default();

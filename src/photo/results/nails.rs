@@ -36,6 +36,8 @@ pub struct NailRow {
     pub at_full_scale: f64,
     /// Of its normalized picture, where there is one.
     pub(in crate::photo) survey: Option<Survey>,
+    /// How much redder than blue it and the skin around it are, the larger of the two, of full scale; of grey ones none.
+    pub(in crate::photo) red_less_blue: Option<f64>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
 }
@@ -53,6 +55,7 @@ impl NailRow {
             normalized: None,
             at_full_scale: 0.0,
             survey: None,
+            red_less_blue: None,
             reason: String::new(),
         }
     }

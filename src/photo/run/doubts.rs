@@ -7,9 +7,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use image::{DynamicImage, GenericImageView as _, Rgba};
+
 use crate::input::same_to_the_byte;
 use crate::median::median_of;
-use crate::photo::normalize::{AT_FULL_SCALE, FULL_SCALE, Survey};
+use crate::photo::normalize::{AT_FULL_SCALE, FULL_SCALE, NailFrame, Survey};
 use crate::photo::outline::Source;
 use crate::photo::results::NailRow;
 use crate::photo::set::{Photo, PhotoSet};
@@ -28,10 +30,52 @@ const USUAL: usize = 3;
 /// Names that a warning gives.
 const NAMES: usize = 3;
 
+/// Skin or nail is redder than blue by more than this, of full scale, whatever tone and light (120 nails of 26 real
+/// hands: by 0.02 in one, 0.11 or more in all others).
+const BLUER: f64 = -0.02;
+
+/// How much redder than blue a nail and the skin beside and below it are, the larger of the two; nothing of grey.
+pub(super) fn red_less_blue(image: &DynamicImage, frame: &NailFrame) -> Option<f64> {
+    let at = |[across, along]: &[f64; 2]| {
+        let [x, y] = frame.photo_from_nail(*across, *along).map(|v| v.round());
+        let within = x >= 0.0 && y >= 0.0 && x < f64::from(image.width()) && y < f64::from(image.height());
+        let Rgba([red, _, blue, _]) = within.then(|| image.get_pixel(x as u32, y as u32))?;
+        Some((f64::from(red) - f64::from(blue)) / f64::from(u8::MAX))
+    };
+    let steps = || (0..9).map(|k| f64::from(k) / 8.0 - 0.5);
+    let nail: Vec<[f64; 2]> = steps().flat_map(|u| steps().map(move |v| [0.7 * u, 0.7 * v])).collect();
+    let skin: Vec<[f64; 2]> = steps().flat_map(|u| [[0.8 * u, -0.62], [0.8 * u, -0.75]]).collect();
+    let mean = |points: &[[f64; 2]]| {
+        let known: Vec<f64> = points.iter().filter_map(at).collect();
+        (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    };
+    image.color().has_color().then(|| Some(mean(&nail)?.max(mean(&skin)?)))?
+}
+
+/// Photographs whose red and blue are exchanged.
+fn exchanged(nails: &[Used]) -> Option<String> {
+    let bluer = nails.iter().filter(|nail| nail.row.red_less_blue.is_some_and(|less| less < BLUER));
+    let names: Vec<String> = bluer.map(|nail| nail.photo.file.clone()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "nail and skin are bluer than red in {}: were red and blue exchanged, as by a program that saves OpenCV's \
+             BGR? Green is right all the same",
+            some(&names)
+        )
+    })
+}
+
 /// What there is to say.
 pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
     let nails: Vec<Used> = rows.iter().filter_map(|row| Used::of(set, row)).collect();
-    let doubts = [same_pictures(&nails), same_outlines(&nails), levels(&nails), cut_off(&nails), folders(set)];
+    let doubts = [
+        same_pictures(&nails),
+        same_outlines(&nails),
+        levels(&nails),
+        cut_off(&nails),
+        exchanged(&nails),
+        folders(set),
+    ];
     doubts.into_iter().flatten().chain(misspelt(set)).collect()
 }
 
