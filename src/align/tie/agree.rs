@@ -18,7 +18,7 @@ use crate::align::posture::Posture;
 use crate::log::{Channel, Samples};
 
 /// Photodiodes follow the finger by so much, seconds: some 0.05 s in bending, 0.1 to 0.4 s in pressing.
-const LAGS_S: [f64; 2] = [-0.3, 0.6];
+const LAGS_S: [f64; 2] = [-0.3, 0.45];
 /// An angle that varies by less than this (standard deviation) is of a still finger, degrees.
 const BENDS_DEG: f64 = 3.0;
 /// So much more is gained elsewhere (twice the logarithm of a likelihood), and so much explained there at least.

@@ -55,6 +55,18 @@ pub(crate) struct Survey {
 }
 
 impl Survey {
+    fn of(levels: impl Iterator<Item = u16> + Clone) -> Self {
+        let greatest = levels.clone().max().unwrap_or(0);
+        let mut survey = Self { seen: 0, sum: 0, squares: 0, greatest, at_greatest: 0 };
+        for level in levels {
+            survey.seen += 1;
+            survey.sum += u64::from(level);
+            survey.squares += u64::from(level).pow(2);
+            survey.at_greatest += u64::from(greatest - level <= SAME_LEVEL);
+        }
+        survey
+    }
+
     /// The mean, a fraction of full scale.
     pub(crate) fn mean(&self) -> f64 {
         self.sum as f64 / self.seen.max(1) as f64 / f64::from(FULL_SCALE)
@@ -98,16 +110,11 @@ impl Normalized {
 
     /// What distinguishes it from other pictures, and shows a camera's end of range.
     pub(crate) fn survey(&self) -> Survey {
-        let known = || (0..self.levels.len()).filter_map(|at| self.level(at));
-        let greatest = known().max().unwrap_or(0);
-        let mut survey = Survey { seen: 0, sum: 0, squares: 0, greatest, at_greatest: 0 };
-        for level in known() {
-            survey.seen += 1;
-            survey.sum += u64::from(level);
-            survey.squares += u64::from(level).pow(2);
-            survey.at_greatest += u64::from(greatest - level <= SAME_LEVEL);
+        match self.seen {
+            // Most are seen whole, and a plain run of levels takes an eighth of the time.
+            None => Survey::of(self.levels.iter().copied()),
+            Some(_) => Survey::of((0..self.levels.len()).filter_map(|at| self.level(at))),
         }
-        survey
     }
 
     fn nowhere(size: usize) -> Self {
