@@ -205,5 +205,5 @@ fn what_is_no_noise_goes_together_in_neighbours() {
         least = least.min(together(&longer));
     }
     eprintln!("noise at most {noise:.2}, longer by 2 % at least {least:.2}");
-    assert!(noise < 0.12 && least > 0.3, "{noise} {least}");
+    assert!(noise < 0.12 && least > 0.25, "{noise} {least}");
 }

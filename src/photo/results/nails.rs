@@ -36,7 +36,7 @@ pub struct NailRow {
     pub at_full_scale: f64,
     /// Of its normalized picture, where there is one.
     pub(in crate::photo) survey: Option<Survey>,
-    /// How much redder than blue it and the skin around it are, the larger of the two, of full scale; of grey ones none.
+    /// How much redder than blue it or the skin around it is, the larger of the two, of full scale; of grey ones none.
     pub(in crate::photo) red_less_blue: Option<f64>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
