@@ -312,7 +312,7 @@ mod tests {
         for fine in [&press as &dyn Fn(usize) -> f64, &|_| 0.01, &|k| 20.0 * press(k)] {
             assert_eq!(doubted("Fz_N", fine), "");
         }
-        for rests in [&|k| press(k) + 1.0, &|_| 0.1 as f64] as [&dyn Fn(usize) -> f64; 2] {
+        for rests in [&|k| press(k) + 1.0, &|_| 0.1] as [&dyn Fn(usize) -> f64; 2] {
             assert!(doubted("Fz_N", rests).starts_with("Fz_N rests at "), "{}", doubted("Fz_N", rests));
         }
         // Spikes and missing values are no presses.
