@@ -194,13 +194,16 @@ pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) ->
                  these are forces of the surface on the finger, negate Fx_N, Fy_N and Fz_N; where the transducer was \
                  not zeroed, take its offset away"
             ));
-        } else if let Some(rests) = resting(name, values).filter(|_| name == "Fz_N") {
-            doubts.push(rests);
-        } else if name == "Fz_N" && greatest > OFFSET_N && greatest > -PULLS * least {
-            doubts.push(format!(
-                "{name} goes from {least:.3} to {greatest:.3} N, and a finger that presses hardly pulls: is it the \
-                 column of another force, or was the transducer not zeroed?"
-            ));
+        } else if name == "Fz_N" {
+            let pulls = || {
+                (greatest > OFFSET_N && greatest > -PULLS * least).then(|| {
+                    format!(
+                        "{name} goes from {least:.3} to {greatest:.3} N, and a finger that presses hardly pulls: is it \
+                         the column of another force, or was the transducer not zeroed?"
+                    )
+                })
+            };
+            doubts.extend(resting(name, values).or_else(pulls));
         }
     }
     doubts

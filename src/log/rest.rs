@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rest_elsewhere_than_at_0_is_told_from_one_at_0() {
+    fn a_rest_elsewhere_than_at_0_is_seen_and_one_at_0_is_none() {
         for noise_n in [0.0, 0.001, 0.02, 0.08] {
             let with = |offset_n: f64, sign: f64| said(|k| sign * -presses(k) + offset_n + noise_n * noise(k));
             for offset_n in [-0.3, -0.12, 0.12, 0.5] {

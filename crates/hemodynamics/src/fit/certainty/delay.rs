@@ -18,6 +18,8 @@ const DEPENDENT: f64 = 1e-6;
 const SHIFTS: i32 = 40;
 const APART_S: f64 = 0.05;
 const SHARE: f64 = 0.25;
+/// Fewer samples have no shift.
+const FEWEST: usize = 10;
 /// Of the sum of squares, what the best of them leaves at most.
 const HALF: f64 = 0.5;
 
@@ -68,7 +70,7 @@ fn large(problem: &Problem, best: &Evaluation, of: usize) -> Option<Delay> {
     let channels: Vec<(&Channel, Vec<f64>)> = problem
         .channels
         .iter()
-        .filter(|channel| channel.recording == of)
+        .filter(|channel| channel.recording == of && channel.rows.len() >= FEWEST)
         .filter_map(|channel| Some((channel, problem.times_s(channel)?)))
         .collect();
     let span_s = channels.iter().filter_map(|(_, times_s)| Some(times_s.last()? - times_s[0])).fold(0.0, f64::max);
