@@ -13,9 +13,7 @@ mod thin;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, GrayAlphaImage, GrayImage, ImageEncoder, ImageError};
 
-pub use chart::{
-    Axis, Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, draw_grid, draw_log_log, draw_panels,
-};
+pub use chart::{Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, draw_grid, draw_log_log, draw_panels};
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use sheet::{Scale, Sheet, Tile, TilePicture};
