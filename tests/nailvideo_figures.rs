@@ -1,7 +1,6 @@
 //! The figures of `lunula nailvideo` that the book's page of accuracy has, on generated videos: errors against exact
 //! truth, what standard errors cover, and what is accepted where another nail is in the picture.
 
-
 use lunula::video::Turn;
 
 use crate::nailvideo::{Covered, Row, grey, number, pictures, write};

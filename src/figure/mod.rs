@@ -2,6 +2,8 @@
 //! jobs.
 
 mod chart;
+#[cfg(test)]
+pub(crate) mod drawn;
 mod grey;
 mod html;
 mod letters;
