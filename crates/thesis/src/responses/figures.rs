@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::curve::{Curve, Point};
 use super::places::Places;
-use lunula::figure::{Cell, Chart, Item, Thinned, draw_charts, draw_grid};
+use lunula::figure::{Cell, Chart, Item, draw_charts, draw_grid};
+use lunula::hemodynamics::figures::over_time;
 
 /// A panel at its place, pixels.
 const PANEL: [u32; 2] = [420, 250];
@@ -32,19 +33,10 @@ fn ways(drive: &str) -> [String; 2] {
     }
 }
 
-/// A curve with breaks where nothing is known, thinned to what a picture shows.
-fn over_time(name: Option<String>, time_s: &[f64], values: &[f64], colour: usize) -> Item {
-    let mut thinned = Thinned::default();
-    for (&time_s, &value) in time_s.iter().zip(values).filter(|(time_s, _)| time_s.is_finite()) {
-        thinned.push(time_s, std::iter::once(value.is_finite().then_some([value, f64::NAN])));
-    }
-    Item::Line { name, runs: thinned.curve(0), colour, width: 2 }
-}
-
 /// Signals over time on one chart (Fig. 23, 26, 29).
 pub(super) fn moves(time_s: &[f64], signals: &[(&str, &[f64])], y: &str, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let items = signals.iter().enumerate().map(|(k, (name, values))| {
-        over_time(Some(name.split('_').next().unwrap_or(name).to_owned()), time_s, values, k)
+        over_time(Some(name.split('_').next().unwrap_or(name).to_owned()), time_s, values, k, 2)
     });
     let chart = Chart::new("", "time, s", y, items.collect(), 400);
     draw_charts(&[chart], WIDTH, png, svg)
@@ -116,7 +108,7 @@ pub(super) fn outputs(
             names[k].clone(),
             "time, s",
             "output, V",
-            vec![room(reaches[k], span, x), over_time(None, time_s, outputs[k].1, 0)],
+            vec![room(reaches[k], span, x), over_time(None, time_s, outputs[k].1, 0, 2)],
             PANEL[1],
         )
     };
