@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, known};
 
 type Row = BTreeMap<String, String>;
 
@@ -28,13 +28,8 @@ fn align(dir: &Dir, more: &[&str]) -> Answer {
     dir.lunula(&[&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--out", "training.csv"], more].concat())
 }
 
-fn number(row: &Row, column: &str) -> Option<f64> {
-    let cell = &row[column];
-    (!cell.is_empty()).then(|| cell.parse().unwrap_or_else(|_| panic!("{column}: `{cell}` is no number")))
-}
-
 fn certificate(dir: &Dir) -> serde_json::Value {
-    serde_json::from_slice(&std::fs::read(dir.path("training.sync.json")).expect("a certificate")).expect("JSON")
+    dir.parsed("training.sync.json")
 }
 
 /// The exact angle of each sample of the log, by the log's own stamp.
@@ -56,7 +51,7 @@ fn labels_are_right(dir: &Dir, set: &[Row]) {
         let exact = truth(dir, joint);
         let column = format!("{joint}_deg");
         let errors: Vec<f64> =
-            set.iter().filter_map(|row| Some((number(row, &column)? - exact[&row["time_s"]]).powi(2))).collect();
+            set.iter().filter_map(|row| Some((known(row, &column)? - exact[&row["time_s"]]).powi(2))).collect();
         assert!(!errors.is_empty(), "{joint} has labels");
         let rms = (errors.iter().sum::<f64>() / errors.len() as f64).sqrt();
         assert!(rms <= bound, "{joint}: {rms} degrees RMS over {}", errors.len());
@@ -81,7 +76,7 @@ fn from_nothing_to_a_set_whose_certificate_agrees_with_the_truth() {
     let read: Vec<(f64, f64)> = angles
         .iter()
         .zip(&shown)
-        .filter_map(|(row, exact)| Some((number(row, "clock_read_s")?, number(exact, "shown_s")?)))
+        .filter_map(|(row, exact)| Some((known(row, "clock_read_s")?, known(exact, "shown_s")?)))
         .collect();
     assert!(read.len() * 20 >= angles.len() * 19, "{} of {} frames read", read.len(), angles.len());
     assert!(read.iter().all(|(read, exact)| (read - exact).abs() <= 1e-6), "none wrong");
@@ -121,9 +116,9 @@ fn from_nothing_to_a_set_whose_certificate_agrees_with_the_truth() {
         assert!(rows.iter().all(|row| row["J2_deg"].is_empty() && row["J2_sd_deg"].is_empty()));
     }
     // Nothing is labelled where the marker was hidden; J1 does not need it.
-    let seen = |frame: usize| OFFSET_S + number(&shown[frame], "time_s").unwrap();
+    let seen = |frame: usize| OFFSET_S + known(&shown[frame], "time_s").unwrap();
     let (from, to) = (seen(41), seen(52));
-    let hidden: Vec<&Row> = set.iter().filter(|row| (from..to).contains(&number(row, "time_s").unwrap())).collect();
+    let hidden: Vec<&Row> = set.iter().filter(|row| (from..to).contains(&known(row, "time_s").unwrap())).collect();
     assert!(hidden.len() >= 3, "{}", hidden.len());
     for row in hidden {
         assert_eq!((row["J2_deg"].as_str(), row["label_status"].as_str()), ("", "gap: J2 J3"));
@@ -204,7 +199,7 @@ fn without_a_clock_an_offset_is_needed() {
     assert!(certificate(&dir)["offset_sd_s"].is_null());
     align(&dir, &["--sync", "offset=77.7123+-0.005"]).expect(0);
     let set = dir.table("training.csv");
-    assert!(set.iter().filter(|row| row["label_status"] == "ok").all(|row| number(row, "J2_sd_deg").unwrap() > 0.0));
+    assert!(set.iter().filter(|row| row["label_status"] == "ok").all(|row| known(row, "J2_sd_deg").unwrap() > 0.0));
     align(&dir, &["--sync", "offset=soon"]).expect(2).says("offset=60.25");
 }
 
@@ -217,7 +212,7 @@ fn midnight_in_the_picture_and_dates_in_the_log() {
     dir.lunula(&[&["phantom", "log", "--stamps", "datetime", "--clock-offset", "86398.3"], &both[..]].concat())
         .expect(0);
     posture(&dir).expect(0);
-    let read: Vec<f64> = dir.table("joints.csv").iter().filter_map(|row| number(row, "clock_read_s")).collect();
+    let read: Vec<f64> = dir.table("joints.csv").iter().filter_map(|row| known(row, "clock_read_s")).collect();
     assert!(read.windows(2).all(|pair| pair[1] >= pair[0]), "counted on over midnight");
     align(&dir, &[]).expect(0);
     let rows = certificate(&dir)["rows_labelled"].as_u64().unwrap();

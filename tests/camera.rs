@@ -52,10 +52,7 @@ fn save(dir: &Dir, name: &str, picture: &GrayImage) {
 /// What is refused says why, and leaves nothing behind.
 #[track_caller]
 fn refused(dir: &Dir, answer: Answer, words: &[&str]) {
-    let mut answer = answer.expect(2);
-    for words in words {
-        answer = answer.says(words);
-    }
+    answer.refuses(words);
     assert!(!dir.path("camera.toml").exists() && !dir.path("camera.run.json").exists());
 }
 

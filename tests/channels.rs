@@ -154,8 +154,7 @@ fn comparing_adds_its_files_and_changes_no_other_whatever_the_threads() {
     let added: Vec<&String> = one.keys().filter(|name| !plain.contains_key(*name)).collect();
     assert_eq!(added, ["channels.csv", "figures/channels.png", "figures/channels.svg"]);
     assert!(plain.iter().all(|(name, bytes)| one[name] == *bytes));
-    let run: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(dir.path("plain/run.json")).expect("run.json")).expect("JSON");
+    let run = dir.parsed("plain/run.json");
     assert!(run["channels"].is_null() && !run.to_string().contains("compare"));
 }
 
@@ -249,8 +248,7 @@ fn poses_are_listed_in_the_thesis_order() {
         assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?} in\n{text}");
     };
     in_order(&(answer.stdout.clone() + &answer.stderr).replace("normalized", "").replace("out/", ""));
-    let run: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(dir.path("out/run.json")).expect("run.json")).expect("JSON");
+    let run = dir.parsed("out/run.json");
     assert_eq!(run["poses"].list().iter().map(|pose| pose["pose"].words()).collect::<Vec<_>>(), expected);
     let of_table = |name: &str| {
         let mut poses: Vec<String> = dir.table(name).into_iter().map(|row| row["pose"].clone()).collect();

@@ -78,7 +78,7 @@ fn doubtful_nails_come_first_and_enter_saves_what_the_next_run_uses() {
 fn whatever_else_is_in_a_file_stays_and_undo_goes_back_to_the_beginning() {
     let dir = Dir::new();
     doubtful(&dir, "set/a");
-    let mut file: Value = serde_json::from_str(&std::fs::read_to_string(dir.path("set/a.json")).unwrap()).unwrap();
+    let mut file: Value = dir.parsed("set/a.json");
     file["lineColor"] = json!([0, 255, 0, 128]);
     file["flags"] = json!({"left hand": true});
     let lunula = json!({"label": "lunula", "points": [[1, 2], [3, 4], [5, 2]], "shape_type": "polygon", "colour": 7});

@@ -4,9 +4,7 @@
 use crate::util::{Answer, Dir, Json, number};
 
 fn run(dir: &Dir, command: &str, options: &str) -> Answer {
-    let mut arguments = vec![command];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("{command} {options}"))
 }
 
 /// A parameter of a parameter file.
@@ -41,7 +39,7 @@ fn what_made_a_recording_is_found_again() {
     let twice = run(&dir, "fit", "r.csv ./r.csv --free k_C,b_V --out t.json --no-figures").expect(0);
     twice.says("r.csv, ./r.csv: the same to the byte, and counted 2 times");
     let report = run(&dir, "fit", "r.csv --free k_C,b_V --out f.json --json").expect(0).json();
-    let written: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.path("f.json")).unwrap()).unwrap();
+    let written = dir.parsed("f.json");
     assert_eq!(written["free"], report["free"]);
     assert_eq!(report["converged"], true);
     for (name, truth) in [

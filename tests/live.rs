@@ -102,10 +102,6 @@ impl Running {
     }
 }
 
-fn json(dir: &Dir, name: &str) -> serde_json::Value {
-    serde_json::from_str(&dir.text(name)).expect("JSON")
-}
-
 #[test]
 fn live_and_batch_and_every_speed_give_the_same_bytes() {
     let dir = desk();
@@ -177,7 +173,7 @@ fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
     dir.lunula(&all).expect(2).says("copy.csv: exists already").says("--replace");
     dir.lunula(&[&all[..], &["--replace", "-q"]].concat()).expect(0);
     dir.lunula(&["train", "copy.csv", "--target", "Fz_N", "--out", "again.json", "-q"]).expect(0);
-    let report = json(&dir, "copy.stream.json");
+    let report = dir.parsed("copy.stream.json");
     assert_eq!(
         (&report["rows"], &report["sources"][0]["lost"], &report["sources"][0]["spoilt"]),
         (&500.into(), &0.into(), &serde_json::json!([]))
@@ -249,7 +245,7 @@ fn spoilt_rows_cost_themselves_and_are_counted() {
         .says("line 3 has a cell that is no finite number (`0.01,x`)")
         .says("line 4 has more or fewer cells than there are columns");
     assert_eq!(live.stdout.lines().count(), 4, "{}", live.stdout);
-    let report = json(&dir, "r.stream.json");
+    let report = dir.parsed("r.stream.json");
     let spoilt: u64 =
         report["sources"][0]["spoilt"].as_array().unwrap().iter().map(|one| one["count"].as_u64().unwrap()).sum();
     assert_eq!(spoilt, 3);
@@ -337,7 +333,7 @@ fn a_device_that_goes_away_is_waited_for() {
     assert_eq!(dir.text("r.predicted.csv"), lines.join("\n") + "\n");
     let events = dir.text("e.jsonl");
     assert!(events.lines().nth(1).unwrap().contains("\"reason\":\"lost\""), "{events}");
-    let report = json(&dir, "r.stream.json");
+    let report = dir.parsed("r.stream.json");
     assert_eq!(report["rows"], dir.text("r.csv").lines().count() - 1);
     assert!(dir.text("r.csv").lines().count() > 45, "one file");
 }
@@ -489,7 +485,7 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     let evaluate = ["switch", "evaluate", "s.toml", "c.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
     let said = dir.lunula(&[&evaluate[..], &["--out", "ev"]].concat()).expect(0).stdout;
     assert!(said.contains("0 of 60 presses missed"), "{said}");
-    let judged = json(&dir, "ev/switch.json");
+    let judged = dir.parsed("ev/switch.json");
     assert_eq!(
         (&judged["presses"], &judged["missed"], &judged["false_per_hour"]),
         (&60.into(), &0.into(), &0.0.into())
@@ -592,7 +588,7 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
         .expect(0)
         .says("contact is not known for 4.0 s")
         .says("presses that begin there, 2, are");
-    let part = json(&dir, "ev-part.csv/switch.json");
+    let part = dir.parsed("ev-part.csv/switch.json");
     let counts = ["presses", "missed", "false_switches", "not_judged"].map(|count| part[count].as_u64().unwrap());
     assert_eq!((counts, dir.table("ev-part.csv/presses.csv").len()), ([8, 0, 0, 2], 8));
     write("odd.csv", &|t_s, light, force| where_known(t_s, light, force, (100.0 * t_s).round() % 2.0 == 0.0));

@@ -67,7 +67,7 @@ fn forces_of_a_second_device_are_recorded_at_the_times_of_samples() {
             assert!(off.abs() <= 1e-9, "{row:?}");
         }
     }
-    let report: serde_json::Value = serde_json::from_str(&dir.text("j.stream.json")).unwrap();
+    let report = dir.parsed("j.stream.json");
     assert_eq!((cells(&text).len(), report["rows_without_force"].as_u64()), (300, Some(300 - known)));
     assert_eq!(report["sources"][1]["gives"], "forces");
     // The same at any speed.

@@ -57,7 +57,7 @@ fn real_hands() -> Vec<Hand> {
     hands.collect()
 }
 
-fn error_deg(axis: Axis, truth_deg: f64) -> f64 {
+pub(crate) fn error_deg(axis: Axis, truth_deg: f64) -> f64 {
     Axis::from_clockwise_rad(axis.clockwise_rad() - truth_deg.to_radians()).clockwise_deg().abs()
 }
 
@@ -151,7 +151,7 @@ fn with_pixels(hand: &Hand, pixel: impl Fn(u32, u32, [f64; 3]) -> [f64; 3]) -> H
 }
 
 /// A cheap hash of a pixel's place to -1..=1.
-fn noise(x: u32, y: u32, channel: u32) -> f64 {
+pub(crate) fn noise(x: u32, y: u32, channel: u32) -> f64 {
     let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ channel.wrapping_mul(0xC2B2_AE3D);
     h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
     h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);

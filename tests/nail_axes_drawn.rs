@@ -5,17 +5,7 @@
 use image::DynamicImage;
 use lunula::photo::outline::{Axis, AxisDoubt, Outline, Side, axis_towards, find_axes};
 
-fn error_deg(axis: Axis, truth_deg: f64) -> f64 {
-    Axis::from_clockwise_rad(axis.clockwise_rad() - truth_deg.to_radians()).clockwise_deg().abs()
-}
-
-/// A cheap hash of a pixel's place to -1..=1.
-fn noise(x: u32, y: u32, channel: u32) -> f64 {
-    let mut h = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ channel.wrapping_mul(0xC2B2_AE3D);
-    h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
-    h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);
-    f64::from(h ^ (h >> 15)) / f64::from(u32::MAX) * 2.0 - 1.0
-}
+use crate::nail_axes::{error_deg, noise};
 
 fn ellipse(centre: [f64; 2], half: [f64; 2]) -> Outline {
     let points: Vec<[f64; 2]> = (0..60)

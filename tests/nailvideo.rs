@@ -6,17 +6,13 @@ use std::path::Path;
 
 use lunula::video::{Encoder, Encoding, Format, Item, Picture, Plane, Turn, Video};
 
-use crate::util::{Answer, Dir};
+use crate::util::Dir;
 
 pub(crate) type Row = BTreeMap<String, String>;
 
 /// A nail that is pressed once, small and fast.
 pub(crate) const SCENE: &str =
     "phantom nailvideo --size 320x240 --nail-px 90 --seconds 6 --drift 5 --x264 ultrafast --out s";
-
-pub(crate) fn words(dir: &Dir, text: &str) -> Answer {
-    dir.lunula(&text.split_whitespace().collect::<Vec<_>>())
-}
 
 pub(crate) fn number(text: &str) -> Option<f64> {
     (!text.is_empty()).then(|| text.parse().unwrap_or_else(|_| panic!("`{text}`")))
@@ -25,9 +21,9 @@ pub(crate) fn number(text: &str) -> Option<f64> {
 #[test]
 fn the_photodiodes_are_those_of_the_truth() {
     let dir = Dir::new();
-    words(&dir, &format!("{SCENE} --rod 150+20")).expect(0);
+    dir.words(&format!("{SCENE} --rod 150+20")).expect(0);
     let job = "nailvideo s/video.mp4 --outline s/outline.json --positions s/positions.toml --light none";
-    words(&dir, &format!("{job} --cells 6 --maps 0..1 --out out")).expect(0);
+    dir.words(&format!("{job} --cells 6 --maps 0..1 --out out")).expect(0);
     let (truth, seen) = (dir.table("s/truth/frames.csv"), dir.table("out/photodiodes.csv"));
     assert_eq!((truth.len(), seen.len()), (180, 180));
     let (mut squares, mut count, mut hidden) = (0.0, 0.0, 0);
@@ -83,8 +79,8 @@ impl Covered {
 fn what_another_finger_covers_has_no_value() {
     let dir = Dir::new();
     let scene = "phantom nailvideo --seconds 3.5 --size 320x240 --nail-px 100 --finger 30+40 --seed 216 --subject 216";
-    words(&dir, &format!("{scene} --out s")).expect(0);
-    words(&dir, "nailvideo s/video.mp4 --outline s/outline.json --maps 0..3 --no-figures --out out").expect(0);
+    dir.words(&format!("{scene} --out s")).expect(0);
+    dir.words("nailvideo s/video.mp4 --outline s/outline.json --maps 0..3 --no-figures --out out").expect(0);
     let (truth, seen) = (dir.table("s/truth/frames.csv"), dir.table("out/photodiodes.csv"));
     let mut counts = Covered::default();
     let followed = truth.iter().zip(&seen).filter(|(_, seen)| seen["status"] == "ok");
@@ -98,9 +94,9 @@ fn what_another_finger_covers_has_no_value() {
 #[test]
 fn a_press_has_its_onset_and_its_release() {
     let dir = Dir::new();
-    words(&dir, SCENE).expect(0);
+    dir.words(SCENE).expect(0);
     let job = "nailvideo s/video.mp4 --outline s/outline.json --no-figures --out out";
-    words(&dir, job).expect(0);
+    dir.words(job).expect(0);
     let truth = dir.table("s/truth/presses.csv");
     let rows = dir.table("out/presses.csv");
     for (event, column) in [("press", "onset_s"), ("release", "release_s")] {
@@ -116,7 +112,7 @@ fn a_press_has_its_onset_and_its_release() {
         assert!(errors.len() >= 4 && median <= 0.036, "{event}: {errors:?}");
     }
     // The same bytes whatever the threads.
-    words(&dir, &job.replace("--out out", "--threads 1 --out one")).expect(0);
+    dir.words(&job.replace("--out out", "--threads 1 --out one")).expect(0);
     for name in ["photodiodes.csv", "motion.csv", "presses.csv", "nail.json", "nail.png"] {
         assert!(
             fs::read(dir.path("out").join(name)).unwrap() == fs::read(dir.path("one").join(name)).unwrap(),
@@ -124,24 +120,24 @@ fn a_press_has_its_onset_and_its_release() {
         );
     }
     // `predict` and its like read it as a log.
-    words(&dir, "nailvideo s/video.mp4 --outline s/outline.json --plan").expect(0);
+    dir.words("nailvideo s/video.mp4 --outline s/outline.json --plan").expect(0);
 }
 
 #[test]
 fn what_can_not_be_followed_is_refused_with_its_remedy() {
     let dir = Dir::new();
-    words(&dir, "phantom nailvideo --size 160x128 --nail-px 20 --seconds 1 --x264 ultrafast --out tiny").expect(0);
-    let small = words(&dir, "nailvideo tiny/video.mp4 --outline tiny/outline.json --out out").expect(2);
+    dir.words("phantom nailvideo --size 160x128 --nail-px 20 --seconds 1 --x264 ultrafast --out tiny").expect(0);
+    let small = dir.words("nailvideo tiny/video.mp4 --outline tiny/outline.json --out out").expect(2);
     small.says("20 px wide").says("film it nearer");
     dir.write(
         "far.toml",
         "name = 'x'\nnail_width_mm = 12.0\ndiameter_mm = 1.0\n[[photodiode]]\nname = 'P3'\nu = 1.4\nv = 0.0\n",
     );
     let far = "nailvideo tiny/video.mp4 --outline tiny/outline.json --positions far.toml --out out";
-    words(&dir, far).expect(2).says("far.toml").says("P3").says("outside of the nail");
-    words(&dir, "nailvideo tiny/video.mp4 --maps 3..1 --out out").expect(2).says("two times in seconds");
-    words(&dir, "nailvideo nowhere.mp4 --out out").expect(2).says("nowhere.mp4");
-    words(&dir, "nailvideo tiny/video.mp4 --masks tiny --out out").expect(2).says("name the mask as the video");
+    dir.words(far).expect(2).says("far.toml").says("P3").says("outside of the nail");
+    dir.words("nailvideo tiny/video.mp4 --maps 3..1 --out out").expect(2).says("two times in seconds");
+    dir.words("nailvideo nowhere.mp4 --out out").expect(2).says("nowhere.mp4");
+    dir.words("nailvideo tiny/video.mp4 --masks tiny --out out").expect(2).says("name the mask as the video");
     assert!(!dir.path("out").exists());
 }
 
@@ -196,7 +192,7 @@ pub(crate) fn write(path: &Path, turn: Turn, pictures: impl Iterator<Item = (Pic
 #[test]
 fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     let dir = Dir::new();
-    words(&dir, &SCENE.replace("--seconds 6", "--seconds 4")).expect(0);
+    dir.words(&SCENE.replace("--seconds 6", "--seconds 4")).expect(0);
     let all = pictures(&dir.path("s/video.mp4"));
     let even = |k: usize| 1000 * k as i64 / 30;
     // Every seventh is lost, the others come late or early.
@@ -212,7 +208,7 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     let follow = |name: &str, light: &str| {
         let out = format!("o-{name}{}", light.replace(' ', "-"));
         let job = format!("nailvideo {name}.mp4 --outline s/outline.json --no-figures --out {out} {light}");
-        let answer = words(&dir, job.trim_end()).expect(0);
+        let answer = dir.words(job.trim_end()).expect(0);
         (dir.table(&format!("{out}/photodiodes.csv")), answer)
     };
     let (plain, _) = follow("plain", "");
@@ -247,5 +243,5 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     let [full, luma] = [range(&traces[0]), range(&traces[1])];
     println!("P2 over the press: green {full}, luma {luma}");
     assert!(luma > 0.4 * full && luma < full, "{luma} {full}");
-    words(&dir, "nailvideo grey.mp4 --outline s/outline.json --light red --out x").expect(2).says("only --light none");
+    dir.words("nailvideo grey.mp4 --outline s/outline.json --light red --out x").expect(2).says("only --light none");
 }

@@ -5,7 +5,7 @@ use std::fs;
 use lunula::video::{Picture, Turn};
 use serde_json::{Value, json};
 
-use crate::nailvideo::{Row, SCENE, number, pictures, words, write};
+use crate::nailvideo::{Row, SCENE, number, pictures, write};
 use crate::util::Dir;
 
 /// A nail at rest before a still camera, in light that each test chooses.
@@ -23,8 +23,7 @@ fn courses(dir: &Dir) -> usize {
 
 /// The shapes of s/outline.json, changed, as `name`.
 fn outline(dir: &Dir, name: &str, change: impl Fn(&mut Vec<Value>)) {
-    let text = fs::read_to_string(dir.path("s/outline.json")).expect("an outline");
-    let mut file: Value = serde_json::from_str(&text).expect("JSON");
+    let mut file = dir.parsed("s/outline.json");
     change(file["shapes"].as_array_mut().expect("shapes"));
     dir.write(name, file.to_string());
 }
@@ -40,29 +39,29 @@ fn moved(shape: &Value, place: impl Fn([f64; 2]) -> [f64; 2]) -> Value {
 #[test]
 fn a_nail_that_comes_into_the_picture_is_found_then() {
     let dir = Dir::new();
-    words(&dir, &SCENE.replace("--seconds 6", "--seconds 2")).expect(0);
+    dir.words(&SCENE.replace("--seconds 6", "--seconds 2")).expect(0);
     let all = pictures(&dir.path("s/video.mp4"));
     let mut bare = all[0].clone();
     bare.planes.iter_mut().for_each(|plane| plane.fill(128));
     write(&dir.path("late.mp4"), Turn::None, at_30_hz(vec![bare; 25].into_iter().chain(all)));
-    words(&dir, "nailvideo late.mp4 --no-figures --out out").expect(0).says("before frame 30");
+    dir.words("nailvideo late.mp4 --no-figures --out out").expect(0).says("before frame 30");
     let motion = dir.table("out/motion.csv");
     assert!(motion[..30].iter().all(|row| row["status"] == "lost: no nail yet" && row["a"].is_empty()));
     assert!(motion[30..].iter().all(|row| row["status"] == "ok"));
     // The outline that was found, as a person may correct it, is one of that frame.
-    words(&dir, "nailvideo late.mp4 --outline out/nail.json --no-figures --out again")
+    dir.words("nailvideo late.mp4 --outline out/nail.json --no-figures --out again")
         .expect(0)
         .says("the outline is drawn on frame 30");
     let again = dir.table("again/motion.csv");
     assert!(again[..30].iter().all(|row| row["status"] == "lost: no nail yet"));
     assert!(again[30..].iter().all(|row| row["status"] == "ok"));
-    let mut file: Value = serde_json::from_slice(&fs::read(dir.path("out/nail.json")).expect("a file")).expect("JSON");
+    let mut file = dir.parsed("out/nail.json");
     file["lunulaFrame"] = json!(1000);
     dir.write("beyond.json", file.to_string());
-    let beyond = words(&dir, "nailvideo late.mp4 --outline beyond.json --out beyond").expect(2);
+    let beyond = dir.words("nailvideo late.mp4 --outline beyond.json --out beyond").expect(2);
     beyond.says("beyond.json").says("frame 1000");
     // Drawn on the first frame there is nothing to follow: no figures.
-    words(&dir, "nailvideo late.mp4 --outline s/outline.json --no-figures --out drawn");
+    dir.words("nailvideo late.mp4 --outline s/outline.json --no-figures --out drawn");
     let rows = if dir.path("drawn").exists() { dir.table("drawn/photodiodes.csv") } else { Vec::new() };
     assert!(rows.iter().skip(1).all(|row| row["P1"].is_empty()), "{:?}", rows.get(1));
 }
@@ -71,20 +70,20 @@ fn a_nail_that_comes_into_the_picture_is_found_then() {
 #[test]
 fn without_a_nail_there_is_a_picture_to_draw_it_on() {
     let dir = Dir::new();
-    words(&dir, &REST.replace("--seconds 6", "--seconds 1")).expect(0);
+    dir.words(&REST.replace("--seconds 6", "--seconds 1")).expect(0);
     let mut bare = pictures(&dir.path("s/video.mp4"))[0].clone();
     let shown = bare.format;
     bare.planes.iter_mut().for_each(|plane| plane.fill(128));
     write(&dir.path("bare.mp4"), Turn::None, at_30_hz(vec![bare; 12]));
-    let none = words(&dir, "nailvideo bare.mp4 --out out").expect(1);
+    let none = dir.words("nailvideo bare.mp4 --out out").expect(1);
     none.says("no nail was found").says("frame 0 is saved as out/nail.png").says("--outline");
     let picture = image::open(dir.path("out/nail.png")).expect("a picture");
     assert_eq!([picture.width() as usize, picture.height() as usize], [shown.width, shown.height]);
-    let mut file: Value = serde_json::from_slice(&fs::read(dir.path("out/nail.json")).expect("a file")).expect("JSON");
+    let mut file = dir.parsed("out/nail.json");
     assert_eq!(file["shapes"], json!([]));
     file["shapes"] = json!([{"label": "nail", "points": [[1, 2], [30, 4], [5, 60]], "shape_type": "polygon"}]);
     dir.write("out/nail.json", file.to_string());
-    words(&dir, "nailvideo bare.mp4 --out out").expect(2).says("draw the nail of the first frame");
+    dir.words("nailvideo bare.mp4 --out out").expect(2).says("draw the nail of the first frame");
     assert_eq!(fs::read_to_string(dir.path("out/nail.json")).expect("a file"), file.to_string());
 }
 
@@ -92,9 +91,9 @@ fn without_a_nail_there_is_a_picture_to_draw_it_on() {
 fn strong_compression_is_a_warning_and_makes_standard_errors_larger() {
     let dir = Dir::new();
     let [fine, strong] = [18, 36].map(|crf| {
-        words(&dir, &format!("phantom nailvideo --seconds 2 --crf {crf} --x264 veryfast --out s{crf}")).expect(0);
+        dir.words(&format!("phantom nailvideo --seconds 2 --crf {crf} --x264 veryfast --out s{crf}")).expect(0);
         let job = format!("nailvideo s{crf}/video.mp4 --outline s{crf}/outline.json --no-figures --json --out o{crf}");
-        words(&dir, &job).expect(0).json()
+        dir.words(&job).expect(0).json()
     });
     let of = |report: &Value, name: &str| report[name].as_f64().expect("known");
     let warns = |report: &Value| report["warnings"].to_string().contains("strongly compressed");
@@ -106,12 +105,12 @@ fn strong_compression_is_a_warning_and_makes_standard_errors_larger() {
 #[test]
 fn of_two_nails_none_is_chosen() {
     let dir = Dir::new();
-    words(&dir, &REST.replace("--seconds 6", "--seconds 1")).expect(0);
+    dir.words(&REST.replace("--seconds 6", "--seconds 1")).expect(0);
     outline(&dir, "two.json", |shapes| {
         let others: Vec<Value> = shapes.iter().map(|shape| moved(shape, |[x, y]| [x - 110.0, y])).collect();
         shapes.extend(others);
     });
-    let two = words(&dir, "nailvideo s/video.mp4 --outline two.json --out out").expect(2);
+    let two = dir.words("nailvideo s/video.mp4 --outline two.json --out out").expect(2);
     two.says("2 nails are seen").says("draw that one alone");
     assert!(!dir.path("out").exists());
 }
@@ -119,7 +118,7 @@ fn of_two_nails_none_is_chosen() {
 #[test]
 fn a_finger_upside_down_has_the_same_photodiodes() {
     let dir = Dir::new();
-    words(&dir, &SCENE.replace("--seconds 6", "--seconds 3")).expect(0);
+    dir.words(&SCENE.replace("--seconds 6", "--seconds 3")).expect(0);
     let all = pictures(&dir.path("s/video.mp4"));
     let [width, height] = [all[0].format.width as f64, all[0].format.height as f64];
     let turned = all.iter().cloned().map(|mut picture| {
@@ -130,8 +129,8 @@ fn a_finger_upside_down_has_the_same_photodiodes() {
     outline(&dir, "down.json", |shapes| {
         shapes.iter_mut().for_each(|shape| *shape = moved(shape, |[x, y]| [width - 1.0 - x, height - 1.0 - y]));
     });
-    words(&dir, JOB).expect(0);
-    words(&dir, "nailvideo down.mp4 --outline down.json --no-figures --out down").expect(0);
+    dir.words(JOB).expect(0);
+    dir.words("nailvideo down.mp4 --outline down.json --no-figures --out down").expect(0);
     let (up, down) = (dir.table("out/photodiodes.csv"), dir.table("down/photodiodes.csv"));
     let (mut squares, mut count) = (0.0, 0.0);
     for (one, other) in up.iter().zip(&down) {
@@ -151,9 +150,8 @@ fn a_finger_upside_down_has_the_same_photodiodes() {
 fn a_polished_nail_is_followed_and_shows_no_press() {
     let dir = Dir::new();
     let short = SCENE.replace("--seconds 6", "--seconds 5");
-    words(&dir, &short.replace("--drift 5", "--drift 0 --turn 0 --scale 0 --tilt 0")).expect(0);
-    let text = fs::read_to_string(dir.path("s/outline.json")).expect("an outline");
-    let file: Value = serde_json::from_str(&text).expect("JSON");
+    dir.words(&short.replace("--drift 5", "--drift 0 --turn 0 --scale 0 --tilt 0")).expect(0);
+    let file = dir.parsed("s/outline.json");
     let nail = file["shapes"].as_array().and_then(|all| all.iter().find(|shape| shape["shape_type"] == "polygon"));
     let corner = |point: &Value| [0, 1].map(|k| point[k].as_f64().expect("a number"));
     let corners: Vec<[f64; 2]> =
@@ -178,7 +176,7 @@ fn a_polished_nail_is_followed_and_shows_no_press() {
         picture
     });
     write(&dir.path("polish.mp4"), Turn::None, at_30_hz(painted));
-    words(&dir, "nailvideo polish.mp4 --outline s/outline.json --no-figures --out out").expect(0);
+    dir.words("nailvideo polish.mp4 --outline s/outline.json --no-figures --out out").expect(0);
     assert!(dir.table("out/motion.csv").iter().all(|row| row["status"] == "ok"));
     assert_eq!(courses(&dir), 0);
 }
@@ -187,8 +185,8 @@ fn a_polished_nail_is_followed_and_shows_no_press() {
 fn light_that_drifts_and_glare_that_moves_are_no_press() {
     let dir = Dir::new();
     for light in ["--light-drift 20 --colour-drift 10 --flicker 5", "--glare 40"] {
-        words(&dir, &format!("{REST} {light}")).expect(0);
-        words(&dir, JOB).expect(0);
+        dir.words(&format!("{REST} {light}")).expect(0);
+        dir.words(JOB).expect(0);
         let photodiodes = dir.table("out/photodiodes.csv");
         assert!(photodiodes.iter().all(|row| row["status"] == "ok"), "{light}");
         assert_eq!(courses(&dir), 0, "{light}");
@@ -200,8 +198,8 @@ fn light_that_drifts_and_glare_that_moves_are_no_press() {
 #[test]
 fn another_nail_after_a_cut_has_no_values_and_the_first_is_found_again() {
     let dir = Dir::new();
-    words(&dir, &format!("{REST} --cut 40+50")).expect(0);
-    words(&dir, JOB).expect(0);
+    dir.words(&format!("{REST} --cut 40+50")).expect(0);
+    dir.words(JOB).expect(0);
     let motion = dir.table("out/motion.csv");
     let is_there = |k: usize| motion[k]["status"] == "ok";
     assert!((1..40).all(is_there) && !(40..90).any(is_there));
@@ -232,8 +230,8 @@ fn hevc_shows_the_nail_of_h264() {
     let scene = SCENE.replace("--seconds 6", "--seconds 4");
     let follow = |more: &str| {
         let out = more.replace(' ', "");
-        words(&dir, &format!("{} {more}", scene.replace("--out s", &format!("--out s{out}")))).expect(0);
-        words(&dir, &format!("nailvideo s{out}/video.mp4 --outline s{out}/outline.json --no-figures --out o{out}"))
+        dir.words(&format!("{} {more}", scene.replace("--out s", &format!("--out s{out}")))).expect(0);
+        dir.words(&format!("nailvideo s{out}/video.mp4 --outline s{out}/outline.json --no-figures --out o{out}"))
             .expect(0);
         dir.table(&format!("o{out}/photodiodes.csv"))
     };
@@ -258,9 +256,9 @@ fn hdr_shows_the_nail_of_ordinary_video() {
     let scene = format!("{} --light-drift 20 --crf 12", SCENE.replace("--seconds 6", "--seconds 4"));
     let follow = |matrix: &str| {
         let scene = scene.replace("--out s", &format!("--out s{matrix}"));
-        words(&dir, &format!("{scene} --matrix {matrix}")).expect(0);
+        dir.words(&format!("{scene} --matrix {matrix}")).expect(0);
         let job = format!("nailvideo s{matrix}/video.mp4 --outline s{matrix}/outline.json");
-        words(&dir, &format!("{job} --no-figures --frames --out o{matrix}")).expect(0);
+        dir.words(&format!("{job} --no-figures --frames --out o{matrix}")).expect(0);
         dir.table(&format!("o{matrix}/photodiodes.csv"))
     };
     let ordinary = follow("709");
@@ -270,7 +268,7 @@ fn hdr_shows_the_nail_of_ordinary_video() {
         println!("{matrix}: {rms} of 100 ln RMS off ordinary video, furthest {furthest}");
         assert!(rms <= bound, "{matrix}: {rms} {furthest}");
         let job = format!("nailvideo s{matrix}/video.mp4 --outline s{matrix}/outline.json --out o{matrix}");
-        let plan = words(&dir, &format!("{job} --plan")).expect(0);
+        let plan = dir.words(&format!("{job} --plan")).expect(0);
         assert!(plan.stdout.contains(name), "{}", plan.stdout);
         // Frames are of the same levels as ordinary ones.
         let mean = |of: &str| {
@@ -286,11 +284,11 @@ fn hdr_shows_the_nail_of_ordinary_video() {
 fn a_file_cut_off_gives_what_was_there_and_status_1_in_both_codecs() {
     let dir = Dir::new();
     for codec in ["h264", "hevc"] {
-        words(&dir, &format!("{} --codec {codec}", SCENE.replace("--seconds 6", "--seconds 4"))).expect(0);
-        words(&dir, JOB).expect(0);
+        dir.words(&format!("{} --codec {codec}", SCENE.replace("--seconds 6", "--seconds 4"))).expect(0);
+        dir.words(JOB).expect(0);
         let bytes = fs::read(dir.path("s/video.mp4")).expect("a video");
         dir.write("s/video.mp4", &bytes[..bytes.len() / 2]);
-        words(&dir, &JOB.replace("--out out", "--out cut")).expect(1).says("cut off");
+        dir.words(&JOB.replace("--out out", "--out cut")).expect(1).says("cut off");
         let [whole, cut] = ["out", "cut"].map(|out| dir.table(&format!("{out}/photodiodes.csv")));
         // Measured 60 and 28; the frame in which the file ends may be there without a picture.
         let there = cut.iter().take_while(|row| row["status"] == "ok").count();
@@ -305,7 +303,7 @@ fn a_file_cut_off_gives_what_was_there_and_status_1_in_both_codecs() {
 #[test]
 fn photodiodes_beside_the_nail_are_refused_and_those_at_one_place_are_named() {
     let dir = Dir::new();
-    words(&dir, &SCENE.replace("--seconds 6", "--seconds 1")).expect(0);
+    dir.words(&SCENE.replace("--seconds 6", "--seconds 1")).expect(0);
     let places = |u: f64, v: f64| {
         let head = "name = 'x'\nnail_width_mm = 12.0\ndiameter_mm = 1.0\n".to_owned();
         (1..=3).fold(head, |text, k| format!("{text}[[photodiode]]\nname = 'P{k}'\nu = {u}\nv = {v}\n"))
@@ -313,10 +311,10 @@ fn photodiodes_beside_the_nail_are_refused_and_those_at_one_place_are_named() {
     let job = format!("{JOB} --positions p.toml");
     dir.write("p.toml", places(3.0, 0.0));
     let named = "outside of the nail: P1 at u = 3, v = 0; P2 at u = 3, v = 0; P3 at u = 3, v = 0;";
-    words(&dir, &job).expect(2).says("p.toml").says(named);
+    dir.words(&job).expect(2).says("p.toml").says(named);
     assert!(!dir.path("out").exists());
     dir.write("p.toml", places(0.1, 0.1));
-    words(&dir, &job).expect(0).says("P1, P2, P3 lie at one place");
+    dir.words(&job).expect(0).says("P1, P2, P3 lie at one place");
     let rows = dir.table("out/photodiodes.csv");
     assert!(rows.len() == 30 && rows.iter().all(|row| !row["P1"].is_empty() && row["P1"] == row["P3"]));
 }
@@ -324,8 +322,8 @@ fn photodiodes_beside_the_nail_are_refused_and_those_at_one_place_are_named() {
 #[test]
 fn two_frames_have_values_and_no_standard_errors_and_no_press() {
     let dir = Dir::new();
-    words(&dir, &SCENE.replace("--seconds 6", "--seconds 0.0667")).expect(0);
-    words(&dir, &JOB.replace("--no-figures ", "")).expect(0).says("no standard errors");
+    dir.words(&SCENE.replace("--seconds 6", "--seconds 0.0667")).expect(0);
+    dir.words(&JOB.replace("--no-figures ", "")).expect(0).says("no standard errors");
     let rows = dir.table("out/photodiodes.csv");
     assert_eq!(rows.len(), 2);
     assert!(rows.iter().all(|row| number(&row["P1"]).is_some() && row["P1_sd"].is_empty()), "{rows:?}");

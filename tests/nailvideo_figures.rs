@@ -1,11 +1,9 @@
 //! The figures of `lunula nailvideo` that the book's page of accuracy has, on generated videos: errors against exact
 //! truth, what standard errors cover, and what is accepted where another nail is in the picture.
 
-use std::fs;
-
 use lunula::video::Turn;
 
-use crate::nailvideo::{Covered, Row, grey, number, pictures, words, write};
+use crate::nailvideo::{Covered, Row, grey, number, pictures, write};
 use crate::util::Dir;
 
 /// The scenes of the design, and what is asked of each: RMS error of the nail's place, pixels.
@@ -29,8 +27,7 @@ fn motion(row: &Row) -> Option<[f64; 6]> {
 
 /// Points over the nail of the first frame: of the outline's box.
 fn grid(dir: &Dir) -> Vec<[f64; 2]> {
-    let text = fs::read_to_string(dir.path("s/outline.json")).expect("an outline");
-    let file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let file = dir.parsed("s/outline.json");
     let shapes = file["shapes"].as_array().expect("shapes");
     let nail = shapes.iter().find(|shape| shape["shape_type"] == "polygon").expect("a nail");
     let points: Vec<[f64; 2]> = serde_json::from_value(nail["points"].clone()).expect("points");
@@ -76,10 +73,10 @@ fn errors_of_the_scenes() {
         for seed in 21..24 {
             let dir = Dir::new();
             let film = format!("phantom nailvideo {how} {PRESET} --seed {seed} --subject {seed} --out s");
-            words(&dir, &film).expect(0);
+            dir.words(&film).expect(0);
             let job = "nailvideo s/video.mp4 --outline s/outline.json --no-figures --light";
-            words(&dir, &format!("{job} none --out none")).expect(0);
-            words(&dir, &format!("{job} red --out red")).expect(0);
+            dir.words(&format!("{job} none --out none")).expect(0);
+            dir.words(&format!("{job} red --out red")).expect(0);
             let (truth, grid) = (dir.table("s/truth/frames.csv"), grid(&dir));
             for (row, truth) in dir.table("red/motion.csv").iter().zip(&truth) {
                 let (Some(seen), Some(exact)) = (motion(row), motion(truth)) else { continue };
@@ -151,9 +148,9 @@ fn under_another_finger(video: fn(&Dir) -> &'static str) -> Covered {
         let dir = Dir::new();
         let look = LOOKS[seed % 3];
         let fingers = "--finger 30+40 --finger 90+30 --finger 140+25";
-        words(&dir, &format!("phantom nailvideo --seconds 6 {look} {fingers} --seed {seed} --subject {seed} --out s"))
+        dir.words(&format!("phantom nailvideo --seconds 6 {look} {fingers} --seed {seed} --subject {seed} --out s"))
             .expect(0);
-        words(&dir, &format!("nailvideo {} --outline s/outline.json --no-figures --out out", video(&dir))).expect(0);
+        dir.words(&format!("nailvideo {} --outline s/outline.json --no-figures --out out", video(&dir))).expect(0);
         let (truth, grid) = (dir.table("s/truth/frames.csv"), grid(&dir));
         let (motions, seen) = (dir.table("out/motion.csv"), dir.table("out/photodiodes.csv"));
         for ((truth, place), seen) in truth.iter().zip(&motions).zip(&seen) {
@@ -181,8 +178,8 @@ fn another_nail_is_never_accepted_in_fifty_thousand_frames() {
              {leave}+60 --rod {rod}+40 --jerk {jerk} --blur 0.7 --drift 20 --x264 ultrafast --crf 23 --seed {seed} \
              --subject {seed} --out s"
         );
-        words(&dir, &scene).expect(0);
-        words(&dir, "nailvideo s/video.mp4 --outline s/outline.json --no-figures --out out").expect(0);
+        dir.words(&scene).expect(0);
+        dir.words("nailvideo s/video.mp4 --outline s/outline.json --no-figures --out out").expect(0);
         let grid = grid(&dir);
         let rows: Vec<(Row, Row)> =
             dir.table("s/truth/frames.csv").into_iter().zip(dir.table("out/motion.csv")).collect();
@@ -245,16 +242,16 @@ fn a_model_of_camera_photodiodes_errs_little_more_than_one_of_the_exact_ones() {
         let dir = Dir::new();
         for (scene, seed) in [("train", 10 + person), ("judge", 20 + person)] {
             let how = format!("--protocol touch-random --seconds 60 --seed {seed} --subject {person}");
-            words(&dir, &format!("phantom nailvideo {how} {PRESET} --out {scene}")).expect(0);
+            dir.words(&format!("phantom nailvideo {how} {PRESET} --out {scene}")).expect(0);
             let job = format!("nailvideo {scene}/video.mp4 --outline {scene}/outline.json --no-figures");
-            words(&dir, &format!("{job} --out {scene}/o")).expect(0);
+            dir.words(&format!("{job} --out {scene}/o")).expect(0);
             for is_exact in [true, false] {
                 dir.write(&format!("{scene}-{is_exact}.csv"), recording(&dir, scene, is_exact));
             }
         }
         let [exact, camera] = [true, false].map(|is_exact| {
             let data = format!("train-{is_exact}.csv --validate judge-{is_exact}.csv");
-            words(&dir, &format!("train {data} --target force --out m-{is_exact} --json")).expect(0).json()
+            dir.words(&format!("train {data} --target force --out m-{is_exact} --json")).expect(0).json()
         });
         let ratios = ["Fx_N", "Fy_N", "Fz_N"].map(|force| {
             let of = |report: &serde_json::Value| report["validation"]["rmse"][force].as_f64().expect("an error");

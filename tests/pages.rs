@@ -176,7 +176,7 @@ fn in_browser_a_hidden_tab_and_a_page_loaded_again_pause_the_prompter() {
     drop(browser);
     interrupts(&child);
     assert_ne!(ends(child), 2);
-    let report: Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let report = dir.parsed("r.run.json");
     let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
     assert_eq!(events.iter().filter(|event| **event == "paused").count(), 2, "{events:?}");
     assert_eq!(report["frames"]["mistaken"], json!(0));

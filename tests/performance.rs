@@ -11,9 +11,7 @@ const COURSE: &str = "--path-m 1.42 --speed-mps 0.025 --decisions 27";
 const SHORTEST_S: f64 = 56.8;
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["performance"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("performance {options}"))
 }
 
 /// The time of a trial whose decisions take so long each.

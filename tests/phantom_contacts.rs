@@ -11,13 +11,7 @@ use lunula::phantom::log::{LiveLog, LogOptions, LogScene, Protocol, Stamps};
 type Table = Vec<BTreeMap<String, String>>;
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["phantom", "log"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
-}
-
-fn text(dir: &Dir, name: &str) -> String {
-    std::fs::read_to_string(dir.path(name)).expect("a file that was written")
+    dir.words(&format!("phantom log {options}"))
 }
 
 /// FNV-1a, 64 bits.
@@ -111,7 +105,7 @@ fn the_pulse_is_in_the_voltages_at_its_rate_and_size() {
     // Nothing but the pulse and the reading's own noise.
     let quiet = "--trajectory rest --no-led --ambient 0 --wander 0 --seconds 120 --rate 20 --lead 0 --trail 0";
     run(&dir, &format!("{quiet} --pulse 0.005 --seed 7 --out p")).expect(0);
-    let record: serde_json::Value = serde_json::from_str(&text(&dir, "p/truth/log.json")).unwrap();
+    let record = dir.parsed("p/truth/log.json");
     let pulse = &record["disturbances"]["pulse"];
     let (heart_hz, shares) = (pulse["heart_hz"].as_f64().unwrap(), pulse["shares"].as_array().unwrap());
     let rows = dir.table("p/log.csv");
@@ -135,7 +129,7 @@ fn the_pulse_is_in_the_voltages_at_its_rate_and_size() {
     run(&dir, &format!("{quiet} --seed 7 --out none")).expect(0);
     let none = dir.table("none/log.csv");
     assert!(amplitude(&none, "P1", heart_hz) <= 1e-4);
-    assert!(!text(&dir, "none/truth/log.json").contains("disturbances"));
+    assert!(!dir.text("none/truth/log.json").contains("disturbances"));
 }
 
 #[test]
@@ -151,7 +145,7 @@ fn a_stream_sends_what_the_file_holds() {
         let mut options = LogOptions { seconds: 60.0, ..LogOptions::of(Protocol::Contacts, 3) };
         change(&mut options);
         lunula::phantom::log::write(&LogScene::new(options.clone()).unwrap(), &dir.path(name)).unwrap();
-        let file = text(&dir, &format!("{name}/log.csv"));
+        let file = dir.text(&format!("{name}/log.csv"));
         let lines: Vec<&str> = file.lines().collect();
         let log = LiveLog::new(&options, false).unwrap();
         assert_eq!(log.names().join(","), lines[0]);
@@ -191,9 +185,9 @@ fn logs_of_before_have_the_bytes_of_before() {
         ("--force random --trajectory random --seed 9 --jitter 0.01 --drop 0.1", 0xe7d9_ee6c_3010_8598),
     ] {
         run(&dir, &format!("{options} --out out")).expect(0);
-        assert_eq!(hash(&text(&dir, "out/log.csv")), bytes, "{options}");
+        assert_eq!(hash(&dir.text("out/log.csv")), bytes, "{options}");
         assert!(!dir.path("out/truth/contacts.csv").exists());
-        let truth = text(&dir, "out/truth/log.csv");
+        let truth = dir.text("out/truth/log.csv");
         assert!(truth.starts_with("sample,time_s,log_s,led,J1_deg"), "{options}");
         // A log that has contacts may stand there before.
         run(&dir, "--protocol contacts --seconds 9 --out out").expect(0);
@@ -221,22 +215,21 @@ fn other_commands_pass_over_the_column_of_contact() {
     {
         run(&dir, &format!("--protocol contacts --seconds 60 {more} --out {name}")).expect(0);
     }
-    let header = |name: &str| text(&dir, &format!("{name}/log.csv")).lines().next().unwrap().to_owned();
+    let header = |name: &str| dir.text(&format!("{name}/log.csv")).lines().next().unwrap().to_owned();
     assert_eq!(header("one"), "time_s,led,P1,P2,P3,P4,P5,P6,P7,P8,Fx_N,Fy_N,Fz_N,contact");
     assert_eq!(header("two"), "time_s,led,P1,P2,P3,P4,P5,P6,P7,P8,Fx_N,Fy_N,Fz_N");
     assert_eq!(header("bare"), "time_s,led,P1,P2,P3,P4,P5,P6,P7,P8,contact");
     let truth = dir.table("one/truth/log.csv");
     assert!(dir.table("one/log.csv").iter().zip(&truth).all(|(row, exact)| row["contact"] == exact["contact"]));
-    let lunula = |line: &str| dir.lunula(&line.split_whitespace().collect::<Vec<_>>());
-    lunula("train one/log.csv --target force --validate two/log.csv --out force.json").expect(0);
+    dir.words("train one/log.csv --target force --validate two/log.csv --out force.json").expect(0);
     // The column changes nothing of a prediction.
     run(&dir, "--protocol contacts --seconds 60 --seed 1 --out without").expect(0);
     for name in ["one", "without", "bare"] {
-        lunula(&format!("predict force.json {name}/log.csv --out {name}.csv")).expect(0);
+        dir.words(&format!("predict force.json {name}/log.csv --out {name}.csv")).expect(0);
     }
-    assert_eq!(text(&dir, "one.csv"), text(&dir, "without.csv"));
+    assert_eq!(dir.text("one.csv"), dir.text("without.csv"));
     assert!(dir.table("bare.csv").len() > 700);
-    lunula("train bare/log.csv --target force --out none.json").expect(2).says("has no column `Fx_N`");
+    dir.words("train bare/log.csv --target force --out none.json").expect(2).says("has no column `Fx_N`");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::util::Dir;
+use crate::util::{Answer, Dir, number};
 use lunula::phantom::Error;
 use lunula::phantom::force::{ForceTrajectory, Spiral};
 use lunula::phantom::log::{LogOptions, LogScene, write};
@@ -12,14 +12,8 @@ use lunula::phantom::trajectory::Trajectory;
 /// Half a step of the converter and of a number's sixth decimal, volts.
 const HALF_STEP_V: f64 = 0.5 * 10.0 / 65_536.0 + 1e-6;
 
-fn run(dir: &Dir, options: &str) -> crate::util::Answer {
-    let mut arguments = vec!["phantom", "log"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+fn run(dir: &Dir, options: &str) -> Answer {
+    dir.words(&format!("phantom log {options}"))
 }
 
 #[test]
@@ -59,9 +53,8 @@ fn the_log_belongs_to_the_video_of_its_seed_and_both_stand_together() {
     let dir = Dir::new();
     let video = "phantom video --out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --fps 60 --size 160x96 \
                  --x264 ultrafast --clock mm:ss.t --clock-offset 754 --clock-drift-ppm 80";
-    let video: Vec<&str> = video.split_whitespace().collect();
     let log = "--out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --clock-offset 754 --clock-drift-ppm 80";
-    dir.lunula(&video).expect(0);
+    dir.words(video).expect(0);
     let alone = dir.bytes_of("s");
     run(&dir, log).expect(0);
     let both = dir.bytes_of("s");
@@ -70,9 +63,9 @@ fn the_log_belongs_to_the_video_of_its_seed_and_both_stand_together() {
     // The other order, and each again.
     std::fs::remove_dir_all(dir.path("s")).unwrap();
     run(&dir, log).expect(0);
-    dir.lunula(&video).expect(0);
+    dir.words(video).expect(0);
     assert!(dir.bytes_of("s") == both);
-    dir.lunula(&video).expect(0);
+    dir.words(video).expect(0);
     run(&dir, log).expect(0);
     assert!(dir.bytes_of("s") == both);
 
@@ -111,7 +104,7 @@ fn the_exact_angles_label_a_log_without_a_video() {
     assert!((number(&angles[1799], "clock_s") - (754.0 + (1.0 + 80e-6) * 1799.0 / 30.0)).abs() <= 1e-9);
     let align =
         "align --joints s/truth/angles.csv --log s/log.csv --out training.csv --subject 1 --session 1 --no-figures";
-    dir.lunula(&align.split_whitespace().collect::<Vec<_>>()).expect(0);
+    dir.words(align).expect(0);
     // Lit samples have one row each.
     let exact = dir.table("s/truth/log.csv").into_iter().filter(|row| row["led"] == "1");
     let mut compared = 0;

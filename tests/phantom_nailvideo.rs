@@ -12,9 +12,7 @@ use ndarray_npy::ReadNpyExt as _;
 const SMALL: &str = "--size 160x128 --nail-px 60 --seconds 3 --x264 ultrafast";
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["phantom", "nailvideo"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("phantom nailvideo {options}"))
 }
 
 #[test]
@@ -47,7 +45,7 @@ fn the_sensor_that_is_worn_logs_the_green_of_the_same_nail() {
         .expect(2);
     let more = "phantom log --sensor nail --force spiral --spiral-seconds 3 --lead 0 --trail 0 --rate 50 --no-led \
                 --ambient 0 --clock-offset 0 --out l";
-    dir.lunula(&more.split_whitespace().collect::<Vec<_>>()).expect(0);
+    dir.words(more).expect(0);
     assert_eq!(fs::read(dir.path("l/log.csv")).unwrap(), fs::read(dir.path("s/log.csv")).unwrap());
 }
 

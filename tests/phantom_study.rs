@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
-use crate::util::Dir;
+use crate::util::{Dir, number};
 use lunula::job::Work;
 use lunula::pipeline::{Catalogue, phantom_catalogue};
 use lunula_thesis::experiments;
@@ -20,7 +20,7 @@ fn small() -> &'static (serde_json::Value, BTreeMap<String, Vec<u8>>) {
     static MADE: OnceLock<(serde_json::Value, BTreeMap<String, Vec<u8>>)> = OnceLock::new();
     MADE.get_or_init(|| {
         let dir = Dir::new();
-        let report = dir.lunula(&[&words(SMALL)[..], &["--json"]].concat()).expect(0).json();
+        let report = dir.words(&format!("{SMALL} --json")).expect(0).json();
         (report, dir.bytes_of("study"))
     })
 }
@@ -30,17 +30,9 @@ fn small_in(dir: &Dir) {
     small().1.iter().for_each(|(name, bytes)| dir.write(&format!("study/{name}"), bytes));
 }
 
-fn words(command: &str) -> Vec<&str> {
-    command.split_whitespace().collect()
-}
-
 fn small_catalogue() -> Catalogue {
     let block = SMALL_BLOCK.parse().expect("TOML");
     phantom_catalogue(&block, experiments()).map_err(|fault| fault.what).expect("a catalogue")
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
 }
 
 #[test]
@@ -70,18 +62,18 @@ fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
     // Another one in the same place replaces it, and so does the same one a second time; and nothing else.
     let other =
         "phantom study --subjects 1 --sensors 1 --presses 0 --video-size 160x96 --fps 5 --seconds 1 --out study";
-    dir.lunula(&words(other)).expect(0);
+    dir.words(other).expect(0);
     let replaced = dir.bytes_of("study");
     assert!(dir.path("study/s01/bending/log.csv").is_file() && !dir.path("study/presses").exists());
     assert!(!replaced.keys().any(|name| name.contains("s02")), "{:?}", replaced.keys());
-    dir.lunula(&words(other)).expect(0);
+    dir.words(other).expect(0);
     assert_eq!(dir.bytes_of("study"), replaced);
     dir.write("study/s01/bending/joints.csv", "mine");
-    dir.lunula(&words(other)).expect(2).says("study/s01/bending/joints.csv stands already");
+    dir.words(other).expect(2).says("study/s01/bending/joints.csv stands already");
     assert_eq!(dir.bytes_of("study").len(), replaced.len() + 1);
     dir.write("other/s01/mine.txt", "mine");
     let elsewhere = SMALL.replace("--out study", "--out other");
-    dir.lunula(&words(&elsewhere)).expect(2).says("other/s01 stands already");
+    dir.words(&elsewhere).expect(2).says("other/s01 stands already");
 }
 
 #[test]
@@ -178,14 +170,14 @@ fn posture_and_log_agree(dir: &Dir, kind: &str, [video, markers]: [&str; 2]) {
 #[test]
 fn a_plan_writes_nothing_and_bad_requests_are_refused_at_once() {
     let dir = Dir::new();
-    let plan = dir.lunula(&words("phantom study --plan --json")).expect(0).json();
+    let plan = dir.words("phantom study --plan --json").expect(0).json();
     let recordings = plan["recordings"].as_array().expect("a list");
     // Photographs, six sessions of seven people and four more of one, two places of eight people, the tables.
     assert_eq!(recordings.len(), 1 + 7 * 6 + 4 + 8 * 2 + 1);
     assert_eq!(plan["options"]["subjects"], 16);
     assert!(dir.bytes_of(".").is_empty());
-    dir.lunula(&words("phantom study --out x --subjects 2 --sensors 3")).expect(2).says("--sensors 3: there are 2");
-    dir.lunula(&words("phantom study --out x --video-size 3x4 --fps 0")).expect(2).says("--size 3x4").says("--fps 0");
+    dir.words("phantom study --out x --subjects 2 --sensors 3").expect(2).says("--sensors 3: there are 2");
+    dir.words("phantom study --out x --video-size 3x4 --fps 0").expect(2).says("--size 3x4").says("--fps 0");
     assert!(dir.bytes_of(".").is_empty());
 }
 
@@ -196,7 +188,7 @@ fn the_preliminary_experiments_have_the_forces_and_rates_of_the_thesis() {
         let exact = format!(
             "phantom log --protocol {protocol} --follow 0 --posture-shift 0 --lead 0 --trail 0 --out {protocol}"
         );
-        dir.lunula(&words(&exact)).expect(0);
+        dir.words(&exact).expect(0);
         let truth = dir.table(&format!("{protocol}/truth/log.csv"));
         assert_eq!(truth.len(), 2500, "100 s");
         let of = |column: &str| truth.iter().map(|row| number(row, column)).collect::<Vec<_>>();
@@ -220,7 +212,7 @@ fn the_preliminary_experiments_have_the_forces_and_rates_of_the_thesis() {
         assert_eq!(rises, 5, "{protocol}");
         assert!(of("J2_deg").iter().all(|j2| *j2 == 0.0));
     }
-    dir.lunula(&words("phantom log --protocol free-bending --follow 0 --lead 0 --trail 0 --out free")).expect(0);
+    dir.words("phantom log --protocol free-bending --follow 0 --lead 0 --trail 0 --out free").expect(0);
     let truth = dir.table("free/truth/log.csv");
     let j2: Vec<f64> = truth.iter().map(|row| number(row, "J2_deg")).collect();
     assert!((j2[0] - 75.0).abs() <= 0.2 && j2.iter().all(|j2| (-10.001..=75.001).contains(j2)));

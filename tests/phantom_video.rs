@@ -281,7 +281,7 @@ fn the_command_line_paints() {
     let dir = Dir::new();
     let run = |more: &str| {
         let line = format!("phantom video --size 320x180 --seconds 0.2 --x264 ultrafast {more} --out out");
-        dir.lunula(&line.split_whitespace().collect::<Vec<_>>()).expect(0);
+        dir.words(&line).expect(0);
         let markers = std::fs::read_to_string(dir.path("out/markers.toml")).unwrap();
         (markers, dir.table("out/truth/tracks.csv"), dir.table("out/truth/joints.csv"))
     };
@@ -442,9 +442,7 @@ fn the_clocks_screen_is_covered_stops_and_jumps_in_the_frames_asked_for() {
     let dir = Dir::new();
     let options = "--size 320x180 --seconds 1 --noise 0 --crf 0 --x264 ultrafast --clock ss.tt --clock-offset 7 \
                    --clock-hide 4+3 --clock-jump 10-2.5 --clock-stop 20 --out out";
-    let mut arguments = vec!["phantom", "video"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments).expect(0);
+    dir.words(&format!("phantom video {options}")).expect(0);
     let rows = dir.table("out/truth/clock.csv");
     let number = |row: usize, column: &str| rows[row][column].parse::<f64>().unwrap();
     let expected = |row| match row {

@@ -347,8 +347,7 @@ fn the_report_needs_nothing_else() {
     let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
     assert_eq!(html.matches("src=\"data:image/").count(), 5);
     assert!(!html.contains("src=\"http") && !html.contains("<script") && !html.contains("<link"));
-    let run: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(dir.path("out/run.json")).expect("run.json")).expect("JSON");
+    let run = dir.parsed("out/run.json");
     assert!(run["stages"].as_array().is_some_and(|s| s.iter().any(|s| s["stage"] == "normalize")));
 }
 

@@ -136,8 +136,8 @@ fn a_grey_picture_is_no_mask_unless_its_values_are_said() {
     dir.lunula(&run).expect(0);
 }
 
-#[test]
-fn a_region_as_large_as_a_finger_is_doubted() {
+/// A photograph whose mask has two nails and a region as large as a finger.
+pub(crate) fn finger_beside_nails() -> Dir {
     let dir = Dir::new();
     drawn_nail().save(dir.place("set/a.png")).expect("a picture");
     let mask = GrayImage::from_fn(160, 140, |x, y| {
@@ -146,6 +146,12 @@ fn a_region_as_large_as_a_finger_is_doubted() {
         Luma([if nails || finger { 255 } else { 0 }])
     });
     mask.save(dir.place("masks/a.png")).expect("a mask");
+    dir
+}
+
+#[test]
+fn a_region_as_large_as_a_finger_is_doubted() {
+    let dir = finger_beside_nails();
     let run = ["photos", "set", "--out", "out", "--masks", "masks", "--distal", "up"];
     dir.lunula(&run).expect(0);
     let (reasons, used) = left_out(&dir);

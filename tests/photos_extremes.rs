@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage, imageops};
+use image::{DynamicImage, Rgb, RgbImage, imageops};
 use lunula::labelme::LabelMe;
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{LightKind, PhotoOptions, write};
@@ -199,14 +199,7 @@ fn count_of(picture: &RgbImage, colour: [u8; 3]) -> usize {
 
 #[test]
 fn what_is_left_out_of_drawn_outlines_is_red_on_the_sheet() {
-    let dir = Dir::new();
-    crate::util::drawn_nail().save(dir.place("set/a.png")).expect("a picture");
-    let mask = GrayImage::from_fn(160, 140, |x, y| {
-        let nails = (60..72).contains(&y) && [10, 40].iter().any(|from| (*from..from + 10).contains(&x));
-        let finger = (90..120).contains(&x) && (10..130).contains(&y);
-        Luma([if nails || finger { 255 } else { 0 }])
-    });
-    mask.save(dir.place("masks/a.png")).expect("a mask");
+    let dir = crate::photos_doubtful::finger_beside_nails();
     dir.lunula(&["photos", "set", "--out", "out", "--masks", "masks", "--distal", "up"]).expect(0);
     let sheet = image::open(dir.path("out/figures/outlines-1.png")).expect("a sheet").to_rgb8();
     // The legend has about 100 and 50 of each.

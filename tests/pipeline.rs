@@ -112,7 +112,7 @@ fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
     assert!(dir.path("out/force/a/model.json").exists());
     let page = fs::read_to_string(dir.path("out/report.html")).unwrap();
     assert!(page.contains("What failed") && page.contains("force/b"));
-    let kept: serde_json::Value = serde_json::from_slice(&fs::read(dir.path("out/run.json")).unwrap()).unwrap();
+    let kept = dir.parsed("out/run.json");
     assert_eq!(kept["stages"], report["stages"]);
     let [share, time]: [f64; 2] = ["share", "task_s"]
         .map(|key| kept["stages"].as_array().unwrap().iter().map(|stage| stage[key].as_f64().unwrap()).sum());

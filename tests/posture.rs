@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, known};
 
 type Rows = Vec<BTreeMap<String, String>>;
 
@@ -23,17 +23,12 @@ fn posture(dir: &Dir, more: &[&str]) -> Answer {
     dir.lunula(&[&given[..], more].concat())
 }
 
-fn number(row: &BTreeMap<String, String>, column: &str) -> Option<f64> {
-    let cell = &row[column];
-    (!cell.is_empty()).then(|| cell.parse().unwrap_or_else(|_| panic!("{column}: `{cell}` is no number")))
-}
-
 /// Root mean square of a joint's error over the rows that have its angle, and how many these are.
 fn rms(found: &Rows, truth: &Rows, joint: &str) -> (f64, usize) {
     assert_eq!(found.len(), truth.len(), "a row a frame");
     let column = format!("{joint}_deg");
     let errors: Vec<f64> =
-        found.iter().zip(truth).filter_map(|(f, t)| Some(number(f, &column)? - number(t, &column)?)).collect();
+        found.iter().zip(truth).filter_map(|(f, t)| Some(known(f, &column)? - known(t, &column)?)).collect();
     ((errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(), errors.len())
 }
 
@@ -64,7 +59,7 @@ fn a_clean_scene_gives_every_angle_with_its_time() {
     let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
     for (index, (row, exact)) in found.iter().zip(&truth).enumerate() {
         assert_eq!(row["frame"], index.to_string());
-        assert!((number(row, "time_s").unwrap() - number(exact, "time_s").unwrap()).abs() <= 1e-4);
+        assert!((known(row, "time_s").unwrap() - known(exact, "time_s").unwrap()).abs() <= 1e-4);
         assert_eq!((row["clock_s"].as_str(), row["status"].as_str()), ("", "ok"));
     }
     let tracks = dir.table("tracks.csv");
@@ -99,7 +94,7 @@ fn markers_of_one_colour_keep_their_names() {
         let (found, truth) = (dir.table("tracks.csv"), dir.table("scene/truth/tracks.csv"));
         for (row, exact) in found.iter().zip(&truth) {
             assert_eq!((&row["frame"], &row["marker"]), (&exact["frame"], &exact["marker"]));
-            let off = ["x_px", "y_px"].map(|c| number(row, c).unwrap() - number(exact, c).unwrap());
+            let off = ["x_px", "y_px"].map(|c| known(row, c).unwrap() - known(exact, c).unwrap());
             assert!(off[0].hypot(off[1]) <= 1.0, "{more:?}: frame {} {}: {off:?}", row["frame"], row["marker"]);
         }
     }
@@ -144,9 +139,9 @@ fn times_are_the_containers_at_a_variable_rate() {
     posture(&dir, &[]).expect(0);
     let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
     assert_eq!(found.len(), truth.len());
-    let times: Vec<f64> = found.iter().map(|row| number(row, "time_s").unwrap()).collect();
+    let times: Vec<f64> = found.iter().map(|row| known(row, "time_s").unwrap()).collect();
     for (time, exact) in times.iter().zip(&truth) {
-        assert!((time - number(exact, "time_s").unwrap()).abs() <= 1e-4);
+        assert!((time - known(exact, "time_s").unwrap()).abs() <= 1e-4);
     }
     let intervals: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(intervals.iter().any(|i| (i - intervals[0]).abs() > 1e-3), "the rate varies");
@@ -259,7 +254,7 @@ fn zero_angles_are_subtracted() {
     dir.write("scene/markers.toml", markers + "\n[zero]\nJ2_deg = 1.5\n");
     posture(&dir, &[]).expect(0);
     for (a, b) in plain.iter().zip(dir.table("joints.csv")) {
-        assert!((number(a, "J2_deg").unwrap() - number(&b, "J2_deg").unwrap() - 1.5).abs() <= 2e-5);
+        assert!((known(a, "J2_deg").unwrap() - known(&b, "J2_deg").unwrap() - 1.5).abs() <= 2e-5);
     }
 }
 
@@ -303,8 +298,8 @@ fn is_rightly_named(dir: &Dir) -> (usize, usize) {
     for (row, exact) in found.iter().zip(&truth) {
         assert_eq!((&row["frame"], &row["marker"]), (&exact["frame"], &exact["marker"]));
         in_view += usize::from(exact["status"] == "ok");
-        if let (Some(x), Some(y)) = (number(row, "x_px"), number(row, "y_px")) {
-            let off = (x - number(exact, "x_px").expect("a place")).hypot(y - number(exact, "y_px").expect("a place"));
+        if let (Some(x), Some(y)) = (known(row, "x_px"), known(row, "y_px")) {
+            let off = (x - known(exact, "x_px").expect("a place")).hypot(y - known(exact, "y_px").expect("a place"));
             assert!(off <= PAINT_OFF_PX, "frame {} {}: {off} px off", row["frame"], row["marker"]);
             seen += 1;
         }
@@ -323,7 +318,7 @@ fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
     for joint in ["J1_deg", "J2_deg", "J3_deg", "T1_deg", "T2_deg"] {
         for (row, exact) in found.iter().zip(&truth) {
             all += 1;
-            errors.extend(number(row, joint).map(|deg| (deg - number(exact, joint).unwrap()).abs()));
+            errors.extend(known(row, joint).map(|deg| (deg - known(exact, joint).unwrap()).abs()));
         }
     }
     assert!(100 * errors.len() >= 98 * all, "{} of {all} angles", errors.len());
@@ -349,11 +344,11 @@ fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
     assert_eq!(report["markers"].as_array().map(Vec::len), Some(8), "{suggested}");
     let exact = dir.table("scene/truth/tracks.csv");
     for row in dir.table("s-tracks.csv") {
-        let (Some(x), Some(y)) = (number(&row, "x_px"), number(&row, "y_px")) else { continue };
+        let (Some(x), Some(y)) = (known(&row, "x_px"), known(&row, "y_px")) else { continue };
         let near = exact
             .iter()
             .filter(|t| t["frame"] == row["frame"])
-            .map(|t| (x - number(t, "x_px").unwrap()).hypot(y - number(t, "y_px").unwrap()));
+            .map(|t| (x - known(t, "x_px").unwrap()).hypot(y - known(t, "y_px").unwrap()));
         let off = near.fold(f64::INFINITY, f64::min);
         assert!(off <= PAINT_OFF_PX, "frame {} {}: {off} px from any mark\n{suggested}", row["frame"], row["marker"]);
     }
@@ -388,7 +383,7 @@ fn a_single_marker_has_tracks_and_no_angles() {
         for row in &tracks {
             let exact =
                 truth.iter().find(|t| t["frame"] == row["frame"] && t["marker"] == row["marker"]).expect("truth");
-            let off = ["x_px", "y_px"].map(|c| number(row, c).unwrap() - number(exact, c).unwrap());
+            let off = ["x_px", "y_px"].map(|c| known(row, c).unwrap() - known(exact, c).unwrap());
             assert!(off[0].hypot(off[1]) <= 1.0, "frame {} {}: {off:?}", row["frame"], row["marker"]);
         }
     }

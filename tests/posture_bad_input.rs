@@ -56,10 +56,7 @@ const SMALL: Format = Format { width: 160, height: 120, subsampling: Some((2, 2)
 /// What is refused leaves nothing behind.
 #[track_caller]
 fn refused(dir: &Dir, answer: Answer, words: &[&str]) {
-    let mut answer = answer.expect(2);
-    for words in words {
-        answer = answer.says(words);
-    }
+    answer.refuses(words);
     assert!(!dir.path("joints.csv").exists() && !dir.path("joints.run.json").exists());
 }
 

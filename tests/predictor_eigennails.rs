@@ -40,7 +40,7 @@ fn press_n(row: usize) -> f64 {
 
 fn train(dir: &Dir, more: &str) -> Answer {
     let line = format!("train given.csv --target force --model eigennails --out m.json {more}");
-    dir.lunula(&line.split_whitespace().collect::<Vec<_>>())
+    dir.words(&line)
 }
 
 /// What the model predicts of given.csv: each force and its SD of each row, all finite.

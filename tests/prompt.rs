@@ -209,7 +209,7 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
     session.page.key("stop");
     session.page.key("stop");
     assert_eq!(ends(session.child), 1);
-    let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let report = dir.parsed("r.run.json");
     let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
     assert_eq!(events[..4], ["begins", "stalled", "goes on", "paused"], "{events:?}");
     let stood_s = report["turns"][2]["stood_s"].number();
@@ -255,7 +255,7 @@ fn a_machine_that_sleeps_stops_the_ring() {
     session.page.key("stop");
     session.page.key("stop");
     assert_eq!(ends(session.child), 1);
-    let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let report = dir.parsed("r.run.json");
     let stood_s: f64 = report["turns"].list().iter().filter_map(|turn| turn["stood_s"].as_f64()).sum();
     let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
     assert!(events.iter().any(|event| ["stalled", "paused"].contains(event)), "{events:?}");
@@ -309,7 +309,7 @@ fn in_browser_a_session_shows_every_frame_where_the_trajectory_is() {
     let code = ends(child);
     let _ = (looks.kill(), looks.wait());
     assert_eq!(code, 0);
-    let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let report = dir.parsed("r.run.json");
     let frames = &report["frames"];
     // Measured 0.02 px.
     assert!(frames["off_px_max"].number() <= 1.0 && frames["mistaken"] == 0, "{frames}");

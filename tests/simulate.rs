@@ -3,9 +3,7 @@
 use crate::util::{Answer, Dir, Json, number};
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["simulate"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("simulate {options}"))
 }
 
 /// Displacements of the walls at rest, m, with ten digits (facts: unloaded, they stand further out than x = 0).

@@ -4,9 +4,7 @@
 use crate::util::{Answer, Dir, number};
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["simulate"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("simulate {options}"))
 }
 
 fn column(dir: &Dir, table: &str, name: &str) -> Vec<f64> {

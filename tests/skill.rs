@@ -14,9 +14,7 @@ const TOUCH_N: f64 = 0.2;
 const RELEASE_N: f64 = 0.1;
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["skill"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("skill {options}"))
 }
 
 /// A press: up in a tenth of a second, held, down in a fifth.

@@ -11,9 +11,7 @@ const FORCE_N: f64 = 0.51e-6;
 const ANGLE_DEG: f64 = 0.51e-5;
 
 fn run(dir: &Dir, options: &str) -> Answer {
-    let mut arguments = vec!["trajectory"];
-    arguments.extend(options.split_whitespace());
-    dir.lunula(&arguments)
+    dir.words(&format!("trajectory {options}"))
 }
 
 fn forces(row: &BTreeMap<String, String>) -> [f64; 3] {

@@ -108,3 +108,11 @@ pub struct AlignOutputs {
     /// Whether the report is written beside the set.
     pub report: bool,
 }
+
+impl AlignOutputs {
+    /// The labelled set with its certificate alone.
+    #[must_use]
+    pub fn only(training: PathBuf) -> Self {
+        Self { training, mot: None, bids: None, dlc: None, figures: false, report: false }
+    }
+}

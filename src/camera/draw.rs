@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::fit::Fit;
 use super::judge::{CELLS, View};
-use crate::figure::{Axis, Bar, Chart, Item, draw_charts};
+use crate::figure::{Bar, Chart, Item, draw_charts};
 
 const WIDTH_PX: u32 = 1000;
 /// Room for the title and the axes beside the picture's frame, pixels.
@@ -21,24 +21,15 @@ pub(super) fn draw(
     svg: &Path,
 ) -> anyhow::Result<()> {
     let frame = (f64::from(WIDTH_PX) - BESIDE_PX.0) * height as f64 / width as f64;
-    let axis = |label: &str| Axis { label: label.to_owned() };
     let charts = [
-        Chart {
-            title: format!("Corners of {} views on the picture (residuals {TIMES} times)", views.len()),
-            x: axis("column, px"),
-            y: axis("row from the lower edge, px"),
-            from_zero: false,
-            items: corners(fit, views, [width as f64, height as f64]),
-            height: (frame + BESIDE_PX.1) as u32,
-        },
-        Chart {
-            title: String::new(),
-            x: axis("view"),
-            y: axis("residual, px RMS"),
-            from_zero: true,
-            items: residuals(fit),
-            height: 260,
-        },
+        Chart::new(
+            format!("Corners of {} views on the picture (residuals {TIMES} times)", views.len()),
+            "column, px",
+            "row from the lower edge, px",
+            corners(fit, views, [width as f64, height as f64]),
+            (frame + BESIDE_PX.1) as u32,
+        ),
+        Chart::new("", "view", "residual, px RMS", residuals(fit), 260).from_zero(),
     ];
     draw_charts(&charts, WIDTH_PX, png, svg)
 }

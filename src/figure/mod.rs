@@ -2,6 +2,8 @@
 //! jobs.
 
 mod chart;
+#[cfg(test)]
+pub(crate) mod drawn;
 mod grey;
 mod html;
 mod letters;
@@ -13,9 +15,7 @@ mod thin;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, GrayAlphaImage, GrayImage, ImageEncoder, ImageError};
 
-pub use chart::{
-    Axis, Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, draw_grid, draw_log_log, draw_panels,
-};
+pub use chart::{Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, draw_grid, draw_log_log, draw_panels};
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use sheet::{Scale, Sheet, Tile, TilePicture};

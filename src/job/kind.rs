@@ -11,6 +11,7 @@ use clap::Args;
 use super::work::{Made, Work};
 use super::{Given, Keys, OptionFault, Said, keys, read};
 use crate::stages::Step;
+use crate::video::Header;
 
 /// How many files a role takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,7 +165,19 @@ impl Foreseen {
     pub fn of<'a>(inputs: &'a [Self], role: &str) -> Option<&'a Self> {
         inputs.iter().find(|input| input.role == role)
     }
+
+    /// How many frames the video of a role has, and of how many pixels each: guessed where its header does not say.
+    pub(crate) fn of_video(inputs: &[Self], role: &str) -> (f64, f64) {
+        let known = Self::of(inputs, role).filter(|video| video.exists);
+        let header = known.and_then(|video| Header::read(&video.path).ok());
+        let (width, height) = header.as_ref().map_or((1280, 720), |header| (header.width, header.height));
+        let frames = header.and_then(|header| header.declared_frames).unwrap_or(TYPICAL_FRAMES);
+        (frames as f64, (width * height) as f64)
+    }
 }
+
+/// Frames of a video whose header does not say how many it has.
+const TYPICAL_FRAMES: u64 = 1800;
 
 /// What of a job's results is wanted, and for whom.
 #[derive(Clone, Copy)]

@@ -8,7 +8,7 @@ use super::options::LayoutOptions;
 use super::read::{Contrast, Given, Place};
 use super::run::report::{LayoutFigures, MethodFigures};
 use super::solve::Method;
-use crate::figure::{Axis, Chart, Item, Point, draw_charts};
+use crate::figure::{Chart, Item, Point, draw_charts};
 use crate::nail::Positions;
 
 /// A map is drawn in at most so many boxes a side.
@@ -64,14 +64,13 @@ pub(super) fn draw_places(
     let reach = |half: f64| 2.0 * half * if given.contrast.is_some() { 1.25 } else { 1.0 };
     // The legend has room above the nail.
     let (width, height) = (MM_PX * reach(half[0]) + BESIDE_PX, MM_PX * reach(half[1]) + BELOW_PX + 110.0);
-    let chart = Chart {
-        title: format!("{} of {} candidates; grey: {what}", chosen.k, figures.candidates),
-        x: Axis { label: "across the nail, mm".to_owned() },
-        y: Axis { label: "along the nail, mm (distal up)".to_owned() },
-        from_zero: false,
+    let chart = Chart::new(
+        format!("{} of {} candidates; grey: {what}", chosen.k, figures.candidates),
+        "across the nail, mm",
+        "along the nail, mm (distal up)",
         items,
-        height: height as u32,
-    };
+        height as u32,
+    );
     draw_charts(&[chart], width.max(640.0) as u32, png, svg)
 }
 
@@ -169,22 +168,19 @@ pub(super) fn draw_errors(figures: &LayoutFigures, [png, svg]: &[PathBuf; 2]) ->
     }
     let who =
         if left_out { "of persons left out, mean and 95 % interval" } else { "of the rows that they were chosen by" };
-    let chart = Chart {
-        title: format!("error against the number of photodiodes, {who}"),
-        x: Axis { label: "photodiodes".to_owned() },
-        y: Axis {
-            label: if figures.error_of_none == 0.5 && left_out {
-                "share put to the wrong one of two poses"
-            } else if figures.error_of_none == 0.5 {
-                "confusion of two poses, at most"
-            } else {
-                "RMSE over the target's SD"
-            }
-            .to_owned(),
+    let chart = Chart::new(
+        format!("error against the number of photodiodes, {who}"),
+        "photodiodes",
+        if figures.error_of_none == 0.5 && left_out {
+            "share put to the wrong one of two poses"
+        } else if figures.error_of_none == 0.5 {
+            "confusion of two poses, at most"
+        } else {
+            "RMSE over the target's SD"
         },
-        from_zero: true,
         items,
-        height: CHART_PX[1],
-    };
+        CHART_PX[1],
+    )
+    .from_zero();
     draw_charts(&[chart], CHART_PX[0], png, svg)
 }

@@ -14,7 +14,7 @@ mod merit;
 mod options;
 mod outputs;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 pub mod trajectory;
 
 use std::path::PathBuf;

@@ -38,6 +38,12 @@ impl Answer {
         self
     }
 
+    /// A refusal that says all of this.
+    #[track_caller]
+    pub fn refuses(self, words: &[&str]) -> Self {
+        words.iter().fold(self.expect(2), |answer, words| answer.says(words))
+    }
+
     pub fn json(&self) -> serde_json::Value {
         assert_eq!(self.stdout.lines().count(), 1, "one JSON object on one line:\n{}", self.stdout);
         serde_json::from_str(&self.stdout).expect("JSON on standard output")
@@ -105,6 +111,11 @@ impl Dir {
         self.lunula_with(&[], arguments)
     }
 
+    /// The same with a command line whose words have no spaces.
+    pub fn words(&self, line: &str) -> Answer {
+        self.lunula(&line.split_whitespace().collect::<Vec<_>>())
+    }
+
     /// The same with environment variables.
     pub fn lunula_with(&self, variables: &[(&str, &str)], arguments: &[&str]) -> Answer {
         let output = Command::new(env!("CARGO_BIN_EXE_lunula"))
@@ -158,7 +169,13 @@ impl Dir {
     }
 }
 
-/// A cell of a table.
+/// The number in a cell of a table; none where it is empty.
+#[track_caller]
+pub fn known(row: &std::collections::BTreeMap<String, String>, column: &str) -> Option<f64> {
+    (!row[column].is_empty()).then(|| number(row, column))
+}
+
+/// The number in a cell of a table.
 #[track_caller]
 pub fn number(row: &std::collections::BTreeMap<String, String>, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))

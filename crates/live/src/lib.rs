@@ -17,3 +17,4 @@ pub mod spread;
 pub mod switch;
 pub mod time;
 pub mod wire;
+mod words;

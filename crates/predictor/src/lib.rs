@@ -62,7 +62,7 @@ pub use subsets::{
 pub use trajectory::{
     Bending, CONE_CELLS, ConeCoverage, Density, Evenness, ForceSpace, ForceSpaceFault, Hole, RELEASE_S, RandomBending,
     RandomForce, RateLimits, Spiral, Wave, cell_middle_n, circling_limit_hz, cone_cell, cone_coverage,
-    rate_limit_per_s, rate_limits,
+    rate_limit_per_s, rate_limits, smooth,
 };
 
 /// The example of the README, run as a test.

@@ -68,14 +68,7 @@ fn person(subject: u32, changes: &Changes, out: &Path) -> anyhow::Result<Person>
         let folder = log(protocol, repetition)?;
         let [joints, log, training] = ["truth/angles.csv", "log.csv", "training.csv"].map(|name| folder.join(name));
         let inputs = AlignInputs { joints, log, tracks: None };
-        let outputs = AlignOutputs {
-            training: training.clone(),
-            mot: None,
-            bids: None,
-            dlc: None,
-            figures: false,
-            report: false,
-        };
+        let outputs = AlignOutputs::only(training.clone());
         let options = AlignOptions {
             subject: Some(subject.to_string()),
             session: Some("1".to_owned()),

@@ -58,11 +58,7 @@ fn fixed(number: f64, decimals: usize, missing: &str) -> String {
     if !number.is_finite() {
         return missing.to_owned();
     }
-    let text = format!("{number:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
-        _ => text,
-    }
+    crate::words::fixed(number, decimals)
 }
 
 /// Writes what is to stand at `path` into the file `at`.

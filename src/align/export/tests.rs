@@ -20,24 +20,9 @@ fn posture() -> Posture {
 }
 
 fn tie() -> Tie {
-    Tie {
-        method: TieMethod::Offset,
-        timebase: Timebase {
-            reference_s: 0.0,
-            at_reference_s: 71.5,
-            at_reference_sd_s: 1e-3,
-            drift: 1e-3,
-            drift_sd: 0.0,
-        },
-        offset_interval_s: None,
-        residual_rms_s: None,
-        residuals_s: Vec::new(),
-        confidence: None,
-        frames_read: 0,
-        frames_abstained: 0,
-        warnings: Vec::new(),
-        notes: Vec::new(),
-    }
+    let timebase =
+        Timebase { reference_s: 0.0, at_reference_s: 71.5, at_reference_sd_s: 1e-3, drift: 1e-3, drift_sd: 0.0 };
+    Tie::of(TieMethod::Offset, timebase)
 }
 
 /// A folder to write to; one to look at, with other programs, under `LUNULA_LOOK` when that is set.

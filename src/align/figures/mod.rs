@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::tie::resolution_s;
 use super::{Labels, Posture, Tie, TieMethod};
-use crate::figure::{Axis, Chart, Item, MOST_BINS, Thinned, draw_charts};
+use crate::figure::{Chart, Item, MOST_BINS, Thinned, draw_charts};
 use crate::log::{Channel, Samples};
 use crate::words::fixed;
 
@@ -61,14 +61,7 @@ pub(super) fn draw_tie(tie: &Tie, posture: &Posture, png: &Path, svg: &Path) -> 
         let name = format!("half a step of the clock's last digit, {half} ms");
         items.push(Item::Line { name: Some(name), runs: vec![run(-half), run(half)], colour: 2, width: 2 });
     }
-    let chart = Chart {
-        title: tie_in_words(tie),
-        x: Axis { label: "time of the video, s".to_owned() },
-        y: Axis { label: "left over by the tie, ms".to_owned() },
-        from_zero: false,
-        items,
-        height: TIE_PX,
-    };
+    let chart = Chart::new(tie_in_words(tie), "time of the video, s", "left over by the tie, ms", items, TIE_PX);
     draw_charts(&[chart], WIDTH, png, svg)?;
     Ok(true)
 }
@@ -120,13 +113,8 @@ fn with_error(value: f64, sd: f64, decimals: usize) -> String {
 pub(super) fn draw_labels(samples: &Samples, labels: &Labels, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let first_s = samples.time_s.first().copied().unwrap_or(0.0);
     let base_s = if first_s.abs() > LONG_S { first_s.floor() } else { 0.0 };
-    let time = Axis {
-        label: if base_s == 0.0 {
-            "time of the log, s".to_owned()
-        } else {
-            format!("time of the log less {base_s}, s")
-        },
-    };
+    let time =
+        if base_s == 0.0 { "time of the log, s".to_owned() } else { format!("time of the log less {base_s}, s") };
     let mut angles = Thinned::default();
     for (row, &time_s) in samples.time_s.iter().enumerate() {
         let known = |joint: usize| Some(labels.angles_deg[joint][row]).filter(|angle| angle.is_finite());
@@ -146,18 +134,17 @@ pub(super) fn draw_labels(samples: &Samples, labels: &Labels, png: &Path, svg: &
         items.push(Item::Line { name, runs: angles.curve(joint), colour: joint, width: 1 });
     }
     let counts = labels.counts();
-    charts.push(Chart {
-        title: format!(
+    charts.push(Chart::new(
+        format!(
             "Labels: {} of {} rows have all of them (bands: plus or minus one standard error)",
             counts.rows_labelled,
             counts.rows_labelled + counts.rows_unlabelled
         ),
-        x: time,
-        y: Axis { label: "angle, degrees of flexion".to_owned() },
-        from_zero: false,
+        time,
+        "angle, degrees of flexion",
         items,
-        height: 460,
-    });
+        460,
+    ));
     draw_charts(&charts, WIDTH, png, svg)
 }
 
@@ -187,14 +174,8 @@ fn lanes(samples: &Samples, base_s: f64, spans: Vec<[f64; 2]>) -> Chart {
         };
         items.push(Item::Text { at: [start_s, (count - k) as f64 - 0.07], text, colour: k });
     }
-    Chart {
-        title: "Photodiodes, each from its lowest to its highest value".to_owned(),
-        x: Axis { label: String::new() },
-        y: Axis { label: String::new() },
-        from_zero: true,
-        items,
-        height: 90 + LANE_PX * count as u32,
-    }
+    Chart::new("Photodiodes, each from its lowest to its highest value", "", "", items, 90 + LANE_PX * count as u32)
+        .from_zero()
 }
 
 /// The lowest and the highest value; none where there is none.

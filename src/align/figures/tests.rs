@@ -1,26 +1,11 @@
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
 use super::*;
 use crate::align::label::{Unlabelled, label};
 use crate::align::posture::ClockColumns;
 use crate::align::tie::by_clock;
+use crate::figure::drawn::drawn;
 use crate::timebase::Timebase;
-
-struct Drawn {
-    _dir: tempfile::TempDir,
-    picture: image::RgbImage,
-    svg: String,
-}
-
-/// Draws a picture; kept under `LUNULA_LOOK` when that is set.
-fn drawn(name: &str, draw: impl FnOnce(&Path, &Path)) -> Drawn {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = std::env::var_os("LUNULA_LOOK").map_or_else(|| dir.path().to_owned(), PathBuf::from);
-    let (png, svg) = (folder.join(format!("{name}.png")), folder.join(format!("{name}.svg")));
-    draw(&png, &svg);
-    Drawn { picture: image::open(&png).unwrap().to_rgb8(), svg: std::fs::read_to_string(svg).unwrap(), _dir: dir }
-}
 
 /// Bending at 0.1 Hz filmed at 30 frames a second with a tenths clock; of every `every` frames `lost` are lost.
 fn posture(seconds: f64, every: usize, lost: usize) -> Posture {

@@ -14,18 +14,7 @@ const LINE: Timebase =
     Timebase { reference_s: 3.0, at_reference_s: 33.25, at_reference_sd_s: 0.0, drift: 45e-6, drift_sd: 0.0 };
 
 fn tie(timebase: Timebase) -> Tie {
-    Tie {
-        method: TieMethod::Clock,
-        timebase,
-        offset_interval_s: None,
-        residual_rms_s: None,
-        residuals_s: Vec::new(),
-        confidence: None,
-        frames_read: 0,
-        frames_abstained: 0,
-        warnings: Vec::new(),
-        notes: Vec::new(),
-    }
+    Tie::of(TieMethod::Clock, timebase)
 }
 
 fn samples(time_s: Vec<f64>) -> Samples {

@@ -161,23 +161,19 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
     let sd_s = if scatter_s > FITTED_S { scatter_s } else { f64::NAN };
     let squares: f64 = off.iter().map(|p| p[1] * p[1]).sum();
     let frames = seen.len() as u64;
+    let timebase = Timebase {
+        reference_s,
+        at_reference_s: reference_s + base + height,
+        at_reference_sd_s: sd_s,
+        drift,
+        drift_sd: sd_s / (0.5 * span_s),
+    };
     Ok(Tie {
-        method: TieMethod::Clock,
-        timebase: Timebase {
-            reference_s,
-            at_reference_s: reference_s + base + height,
-            at_reference_sd_s: sd_s,
-            drift,
-            drift_sd: sd_s / (0.5 * span_s),
-        },
-        offset_interval_s: None,
         residual_rms_s: Some((squares / frames as f64).sqrt()),
         residuals_s: off,
-        confidence: None,
         frames_read: frames,
         frames_abstained: posture.time_s.len() as u64 - frames,
-        warnings: Vec::new(),
-        notes: Vec::new(),
+        ..Tie::of(TieMethod::Clock, timebase)
     })
 }
 

@@ -93,24 +93,14 @@ pub(crate) fn by_correlation(posture: &Posture, samples: &Samples, options: LagT
     if let Some(other) = found.others.first() {
         notes.push(format!("the next best lag is {:.3} s, with {:.1} %", other.offset_s, 100.0 * other.explained));
     }
-    Ok(Tie {
-        method: TieMethod::Correlate,
-        timebase: Timebase {
-            reference_s,
-            at_reference_s: reference_s + offset_s,
-            at_reference_sd_s: found.offset_sd_s.hypot(LAG_SD_S),
-            drift,
-            drift_sd,
-        },
-        offset_interval_s: None,
-        residual_rms_s: None,
-        residuals_s: Vec::new(),
-        confidence: Some(found.confidence),
-        frames_read: 0,
-        frames_abstained: 0,
-        warnings,
-        notes,
-    })
+    let timebase = Timebase {
+        reference_s,
+        at_reference_s: reference_s + offset_s,
+        at_reference_sd_s: found.offset_sd_s.hypot(LAG_SD_S),
+        drift,
+        drift_sd,
+    };
+    Ok(Tie { confidence: Some(found.confidence), warnings, notes, ..Tie::of(TieMethod::Correlate, timebase) })
 }
 
 /// How much faster the log's clock runs by the lags of both halves, and its standard error.

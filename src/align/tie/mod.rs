@@ -53,3 +53,21 @@ pub struct Tie {
     /// What was chosen or counted, and needs no action.
     pub notes: Vec<String>,
 }
+
+impl Tie {
+    /// A tie of which no more is known than its timebase.
+    pub(in crate::align) fn of(method: TieMethod, timebase: Timebase) -> Self {
+        Self {
+            method,
+            timebase,
+            offset_interval_s: None,
+            residual_rms_s: None,
+            residuals_s: Vec::new(),
+            confidence: None,
+            frames_read: 0,
+            frames_abstained: 0,
+            warnings: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+}

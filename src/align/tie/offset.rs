@@ -21,24 +21,14 @@ pub(crate) fn by_offset(offset_s: f64, offset_sd_s: Option<f64>) -> Result<Tie, 
     }
     let notes = vec!["the offset is the user's, and drift is taken to be 0".to_owned()];
     let at_reference_sd_s = offset_sd_s.unwrap_or(f64::NAN);
-    Ok(Tie {
-        method: TieMethod::Offset,
-        timebase: Timebase {
-            reference_s: 0.0,
-            at_reference_s: offset_s,
-            at_reference_sd_s,
-            drift: 0.0,
-            drift_sd: if offset_sd_s.is_some() { 0.0 } else { f64::NAN },
-        },
-        offset_interval_s: None,
-        residual_rms_s: None,
-        residuals_s: Vec::new(),
-        confidence: None,
-        frames_read: 0,
-        frames_abstained: 0,
-        warnings,
-        notes,
-    })
+    let timebase = Timebase {
+        reference_s: 0.0,
+        at_reference_s: offset_s,
+        at_reference_sd_s,
+        drift: 0.0,
+        drift_sd: if offset_sd_s.is_some() { 0.0 } else { f64::NAN },
+    };
+    Ok(Tie { warnings, notes, ..Tie::of(TieMethod::Offset, timebase) })
 }
 
 #[cfg(test)]

@@ -30,23 +30,16 @@ pub use item::{Bar, Item, Mark, MarkShape, Point};
 pub struct Chart {
     /// Above the axes.
     pub title: String,
-    /// Horizontal.
-    pub x: Axis,
-    /// Vertical; without a label its numbers mean nothing and are not written.
-    pub y: Axis,
+    /// What the horizontal axis shows, with its unit.
+    pub x: String,
+    /// What the vertical axis shows; where it is empty, its numbers mean nothing and are not written.
+    pub y: String,
     /// Whether the vertical axis begins at zero.
     pub from_zero: bool,
     /// What is drawn, the lowest first.
     pub items: Vec<Item>,
     /// Its height in pixels.
     pub height: u32,
-}
-
-/// An axis of a chart.
-#[derive(Debug, Clone)]
-pub struct Axis {
-    /// What it shows, with its unit.
-    pub label: String,
 }
 
 /// How numbers are laid out along both axes.
@@ -133,6 +126,24 @@ impl Draw for Panels<'_> {
 }
 
 impl Chart {
+    /// A chart whose vertical axis shows what its items need.
+    #[must_use]
+    pub fn new(
+        title: impl Into<String>,
+        x: impl Into<String>,
+        y: impl Into<String>,
+        items: Vec<Item>,
+        height: u32,
+    ) -> Self {
+        Self { title: title.into(), x: x.into(), y: y.into(), from_zero: false, items, height }
+    }
+
+    /// The same with a vertical axis that begins at zero.
+    #[must_use]
+    pub fn from_zero(self) -> Self {
+        Self { from_zero: true, ..self }
+    }
+
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, scales: Scales) -> anyhow::Result<()>
     where
         B::ErrorType: 'static,
@@ -182,13 +193,13 @@ impl Chart {
         }
         let names = self.names();
         let number_x = |value: &f64| if names.is_some() { String::new() } else { number(*value, x) };
-        let number_y = |value: &f64| if self.y.label.is_empty() { String::new() } else { number(*value, y) };
+        let number_y = |value: &f64| if self.y.is_empty() { String::new() } else { number(*value, y) };
         let mut mesh = chart.configure_mesh();
         if names.is_some() {
             mesh.disable_x_mesh().set_tick_mark_size(LabelAreaPosition::Bottom, 0);
         }
-        mesh.x_desc(&self.x.label)
-            .y_desc(&self.y.label)
+        mesh.x_desc(&self.x)
+            .y_desc(&self.y)
             .label_style(("sans-serif", 15))
             .axis_desc_style(("sans-serif", 17))
             .light_line_style(TRANSPARENT)
@@ -220,8 +231,8 @@ impl Chart {
         let mut chart = built.map_err(|e| anyhow!("{e}"))?;
         chart
             .configure_mesh()
-            .x_desc(&self.x.label)
-            .y_desc(&self.y.label)
+            .x_desc(&self.x)
+            .y_desc(&self.y)
             .label_style(("sans-serif", 15))
             .axis_desc_style(("sans-serif", 17))
             .light_line_style(RGBColor(240, 240, 240))
@@ -240,7 +251,7 @@ impl Chart {
         let mut builder = ChartBuilder::on(area);
         let lines =
             self.names().map_or(1, |names| names.iter().map(|(_, name)| name.lines().count()).max().unwrap_or(1));
-        let below = if self.x.label.is_empty() { 26 } else { 46 } + NAME_LINE_PX * (lines.max(1) as u32 - 1);
+        let below = if self.x.is_empty() { 26 } else { 46 } + NAME_LINE_PX * (lines.max(1) as u32 - 1);
         builder.margin(16).x_label_area_size(below).y_label_area_size(74);
         if !self.title.is_empty() {
             builder.caption(&self.title, ("sans-serif", 22));

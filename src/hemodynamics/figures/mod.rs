@@ -5,7 +5,7 @@ mod over_time;
 pub(super) use over_time::draw_response;
 pub use over_time::{Curve, Panel, draw_over_time, over_time};
 
-use crate::figure::{Axis, Chart, Item};
+use crate::figure::{Chart, Item};
 
 /// Width of a picture.
 pub const WIDTH: u32 = 1100;
@@ -16,8 +16,7 @@ pub const N_PER_CM2: f64 = 1e4;
 
 /// A panel with these axes.
 pub fn chart(title: &str, x: &str, y: &str, items: Vec<Item>) -> Chart {
-    let axis = |label: &str| Axis { label: label.to_owned() };
-    Chart { title: title.to_owned(), x: axis(x), y: axis(y), from_zero: false, items, height: HEIGHT }
+    Chart::new(title, x, y, items, HEIGHT)
 }
 
 /// A line of one stretch, 2 pixels wide.

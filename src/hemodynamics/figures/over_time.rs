@@ -34,10 +34,11 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A curve thinned to what a picture shows, extremes kept; a break where a value is not finite.
+/// A curve thinned to what a picture shows, extremes kept; a break where a value is not finite, nothing where its time
+/// is not.
 pub fn over_time(name: Option<String>, times_s: &[f64], values: &[f64], colour: usize, width: u32) -> Item {
     let mut thinned = Thinned::default();
-    for (&time_s, &value) in times_s.iter().zip(values) {
+    for (&time_s, &value) in times_s.iter().zip(values).filter(|(time_s, _)| time_s.is_finite()) {
         thinned.push(time_s, std::iter::once(value.is_finite().then_some([value, f64::NAN])));
     }
     Item::Line { name, runs: thinned.curve(0), colour, width }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::read::Trials;
 use super::report::{MethodFigures, PerformanceFigures};
-use crate::figure::{Axis, Chart, Item, draw_charts, draw_panels};
+use crate::figure::{Chart, Item, draw_charts, draw_panels};
 
 const WIDTH: u32 = 1000;
 const HEIGHT: u32 = 560;
@@ -26,13 +26,12 @@ const TIME: &str = "time per decision, s";
 
 /// A chart over these trials; whole numbers are below its axis, while there is room for them.
 fn chart(title: String, trials: &BTreeSet<u32>, mut items: Vec<Item>, height: u32) -> Chart {
-    let axis = |label: &str| Axis { label: label.to_owned() };
     if let (Some(&first), Some(&last)) = (trials.first(), trials.last())
         && ((last - first) as usize) < MOST_NUMBERED
     {
         items.push(Item::Names((first..=last).map(|trial| (f64::from(trial), trial.to_string())).collect()));
     }
-    Chart { title, x: axis(TRIAL), y: axis(TIME), from_zero: true, items, height }
+    Chart::new(title, TRIAL, TIME, items, height).from_zero()
 }
 
 /// One panel per operator, a line per method.

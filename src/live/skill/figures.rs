@@ -7,7 +7,7 @@ use lunula_live::skill::{Contact, Force};
 use super::read::Trial;
 use super::report::{MEASURES, Measure, TrialFigures};
 use super::summary;
-use crate::figure::{Axis, Chart, Item, MOST_BINS, Thinned, draw_charts, draw_panels};
+use crate::figure::{Chart, Item, MOST_BINS, Thinned, draw_charts, draw_panels};
 
 /// Trials that are drawn, each in a picture of its own.
 pub(super) const MOST_DRAWN: usize = 20;
@@ -72,20 +72,20 @@ pub(super) fn draw_trial(trial: &Drawn, png: &Path, svg: &Path) -> anyhow::Resul
     let ends = trial.fingers.iter().flat_map(|finger| finger.runs.iter().flatten().map(|point| [point[0], 0.0]));
     let room: Vec<[f64; 2]> = ends.collect();
     let panel = |(k, finger): (usize, &DrawnFinger)| {
-        let title = if k == 0 { trial.title.clone() } else { String::new() };
+        let title = if k == 0 { trial.title.as_str() } else { "" };
         let label = if k == last { "time, s" } else { "" };
-        Chart {
-            height: PANEL_PX + if k == 0 { 50 } else { 0 } + if k == last { 20 } else { 0 },
+        Chart::new(
             title,
-            x: Axis { label: label.to_owned() },
-            y: Axis { label: format!("{}, N", finger.name) },
-            from_zero: true,
-            items: vec![
+            label,
+            format!("{}, N", finger.name),
+            vec![
                 Item::Room(room.clone()),
                 Item::Spans { name: (k == 0).then(|| "contact".to_owned()), spans: finger.contacts.clone() },
                 Item::Line { name: None, runs: finger.runs.clone(), colour: k, width: 2 },
             ],
-        }
+            PANEL_PX + if k == 0 { 50 } else { 0 } + if k == last { 20 } else { 0 },
+        )
+        .from_zero()
     };
     let charts: Vec<Chart> = trial.fingers.iter().enumerate().map(panel).collect();
     draw_charts(&charts, WIDTH, png, svg)
@@ -129,13 +129,6 @@ fn chart(trials: &[TrialFigures], measure: &Measure) -> Chart {
         1 => "trial, in the order given",
         _ => "trial, in the order given (dots: people, line: their mean)",
     };
-    Chart {
-        title: String::new(),
-        x: Axis { label: label.to_owned() },
-        y: Axis { label: measure.axis.to_owned() },
-        // A smoothness is negative.
-        from_zero: measure.name != "smoothness",
-        items,
-        height: SUMMARY.1,
-    }
+    // A smoothness is negative.
+    Chart { from_zero: measure.name != "smoothness", ..Chart::new("", label, measure.axis, items, SUMMARY.1) }
 }

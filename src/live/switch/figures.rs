@@ -5,7 +5,7 @@ use std::path::Path;
 use lunula_live::switch::{Fate, Match};
 
 use super::report::TuneReport;
-use crate::figure::{Axis, Chart, Item, draw_charts};
+use crate::figure::{Chart, Item, draw_charts};
 
 const WIDTH: u32 = 900;
 const HEIGHT: u32 = 520;
@@ -35,14 +35,14 @@ pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path
         let text = format!("on {} N, off {} N", report.switch.on_n, report.switch.off_n);
         items.push(Item::Label { at, text, colour: 1, above: true });
     }
-    let chart = Chart {
-        title: title.to_owned(),
-        x: Axis { label: format!("false switches per hour (counted in {:.2} h)", report.chosen.hours) },
-        y: Axis { label: "mean delay of presses, ms".to_owned() },
-        from_zero: true,
+    let chart = Chart::new(
+        title,
+        format!("false switches per hour (counted in {:.2} h)", report.chosen.hours),
+        "mean delay of presses, ms",
         items,
-        height: HEIGHT,
-    };
+        HEIGHT,
+    )
+    .from_zero();
     draw_charts(&[chart], WIDTH, png, svg)
 }
 
@@ -66,13 +66,6 @@ pub(super) fn draw_delays(found: &[Vec<Match>], png: &Path, svg: &Path) -> anyho
         colour,
         width: 2,
     }));
-    let chart = Chart {
-        title: "Delays of the switch".to_owned(),
-        x: Axis { label: "delay, ms".to_owned() },
-        y: Axis { label: "share within it, %".to_owned() },
-        from_zero: true,
-        items,
-        height: HEIGHT,
-    };
+    let chart = Chart::new("Delays of the switch", "delay, ms", "share within it, %", items, HEIGHT).from_zero();
     draw_charts(&[chart], WIDTH, png, svg)
 }

@@ -4,8 +4,10 @@
 //! are the nearest line above with as many, or LabChart's `ChannelTitle=`; a line of units between them and the rows
 //! goes to the names.
 
-use super::split::{Line, a_name, cells_of, is_comment, is_comments, lines_in_use, split};
-use crate::log::lines::cell::{Numbers, bare};
+use lunula_live::wire::{bare, is_name};
+
+use super::split::{Line, cells_of, is_comment, is_comments, lines_in_use, split};
+use crate::log::lines::cell::Numbers;
 use crate::table::DELIMITERS;
 
 /// Lines that are looked at.
@@ -71,7 +73,7 @@ fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result
         }
         let is_longer =
             cells.len() == count + 1 && cells.last().is_some_and(|last| last.is_empty() || is_comments(last));
-        if cells.len() != count && !is_longer || !cells.iter().any(|cell| a_name(cell)) {
+        if cells.len() != count && !is_longer || !cells.iter().any(|cell| is_name(cell)) {
             break;
         }
         if units.is_none() && cells.iter().all(|cell| cell.is_empty() || unit(cell).is_some()) {

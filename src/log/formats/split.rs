@@ -1,6 +1,6 @@
 //! Text taken apart: lines, cells, names.
 
-use crate::log::lines::cell::bare;
+use lunula_live::wire::bare;
 
 /// The line that begins at `at`, without its end, and where the next one begins.
 pub(in crate::log) fn line_at(text: &[u8], at: usize) -> (&[u8], usize) {
@@ -53,11 +53,4 @@ pub(in crate::log) fn is_comment(cell: &[u8]) -> bool {
 /// Whether a column holds comments, as LabVIEW's last: rows without one leave it out.
 pub(in crate::log) fn is_comments(name: &str) -> bool {
     name.eq_ignore_ascii_case("comment")
-}
-
-/// Whether a cell may be a column's name.
-pub(in crate::log) fn a_name(cell: &str) -> bool {
-    !cell.is_empty()
-        && cell.replace(',', ".").parse::<f64>().is_err()
-        && !cell.starts_with(|c: char| c.is_ascii_digit())
 }

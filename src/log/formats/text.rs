@@ -8,8 +8,10 @@
 
 use std::path::Path;
 
+use lunula_live::wire::is_name;
+
 use super::preamble::{self, Found, row_cells};
-use super::split::{Line, a_name, cells_of, line_at, lines_in_use, split};
+use super::split::{Line, cells_of, line_at, lines_in_use, split};
 use crate::input;
 use crate::log::LogError;
 use crate::log::naming::guess::role_of;
@@ -152,11 +154,11 @@ impl Layout {
         let mut notes: Vec<String> = separated(delimiter).into_iter().collect();
         let cells = cells_of(row, delimiter);
         let holds_others = false;
-        if cells.iter().any(|cell| a_name(cell)) {
+        if cells.iter().any(|cell| is_name(cell)) {
             return Ok(Self { delimiter, names: cells, body: next, lines_before: line, holds_others, notes });
         }
         let names = comment.map(|comment| cells_of(comment.trim_ascii(), delimiter));
-        match names.filter(|names| names.len() == cells.len() && names.iter().any(|cell| a_name(cell))) {
+        match names.filter(|names| names.len() == cells.len() && names.iter().any(|cell| is_name(cell))) {
             Some(names) => {
                 notes.push("the columns' names are taken from the last line of the comment at the top".to_owned());
                 Ok(Self { delimiter, names, body: at, lines_before: line - 1, holds_others, notes })

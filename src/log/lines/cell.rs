@@ -3,7 +3,7 @@
 //! Numbers have a decimal point or, where cells are not separated by commas, a decimal comma; not both in one file, and
 //! no marks between thousands.
 
-use lunula_live::wire::{self, is_missing};
+use lunula_live::wire::{self, is_missing, with_decimal_comma};
 
 /// Reads cells as numbers.
 #[derive(Debug, Clone, Default)]
@@ -86,27 +86,10 @@ pub(in crate::log) fn shown(cell: &[u8]) -> String {
     text.chars().take(MOST).chain("..".chars()).collect()
 }
 
-/// A cell without space and double quotes around it.
-pub(in crate::log) fn bare(cell: &[u8]) -> &[u8] {
-    let cell = cell.trim_ascii();
-    match cell {
-        [b'"', inside @ .., b'"'] => inside.trim_ascii(),
-        _ => cell,
-    }
-}
-
-fn with_decimal_comma(cell: &[u8]) -> Option<f64> {
-    // Longer than any number that a program writes.
-    let mut text = [0; 64];
-    let text = text.get_mut(..cell.len())?;
-    text.copy_from_slice(cell);
-    let comma = text.iter().position(|&b| b == b',')?;
-    text[comma] = b'.';
-    std::str::from_utf8(text).ok()?.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
 #[cfg(test)]
 mod tests {
+    use lunula_live::wire::bare;
+
     use super::*;
 
     #[test]

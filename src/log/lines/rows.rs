@@ -6,12 +6,13 @@
 
 use std::path::Path;
 
+use lunula_live::wire::bare;
+
 use crate::log::LogError;
 use crate::log::formats::raw::{Raw, RowWord, place};
 use crate::log::formats::split::{is_comment, is_comments};
 use crate::log::formats::text::{self, Layout};
-use crate::log::lines::cell::shown;
-use crate::log::lines::cell::{self, Numbers, bare};
+use crate::log::lines::cell::{self, Numbers, shown};
 use crate::log::lines::stamps::Stamps;
 use crate::log::naming::columns::{Choice, Columns};
 use crate::log::naming::role::Role;

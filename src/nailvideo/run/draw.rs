@@ -5,7 +5,7 @@ use std::mem;
 use image::RgbImage;
 
 use super::report::NailVideoReport;
-use crate::figure::{Axis, Chart, Item, Page, Sheet, Thinned, Tile, TilePicture, draw_charts};
+use crate::figure::{Chart, Item, Page, Sheet, Thinned, Tile, TilePicture, draw_charts};
 use crate::files::{Staging, WriteError};
 use crate::nailvideo::affine::Affine;
 use crate::nailvideo::normal::picture;
@@ -106,7 +106,6 @@ fn charts(recording: &Recording<'_>, rows: &[Row], unit: &str) -> Vec<Chart> {
         .filter_map(|row| row.span_s().map(|(from, to)| [from, to]))
         .collect();
     let half = recording.traces.len().div_ceil(2);
-    let axis = |label: &str| Axis { label: label.to_owned() };
     let count = recording.traces.len();
     let chart = |from: usize, to: usize, first: bool| {
         let lost_name = Some("a photodiode is missing".to_owned()).filter(|_| first && !lost.is_empty());
@@ -124,14 +123,7 @@ fn charts(recording: &Recording<'_>, rows: &[Row], unit: &str) -> Vec<Chart> {
             }
         }
         let title = if first { "Virtual photodiodes over time (upright lines: press, release)" } else { "" };
-        Chart {
-            title: title.to_owned(),
-            x: axis(if first && half < count { "" } else { "time, s" }),
-            y: axis(unit),
-            from_zero: false,
-            items,
-            height: 420,
-        }
+        Chart::new(title, if first && half < count { "" } else { "time, s" }, unit, items, 420)
     };
     let mut charts = vec![chart(0, half, true)];
     if half < count {

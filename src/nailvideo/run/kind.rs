@@ -10,7 +10,6 @@ use crate::nailvideo::run::job::run;
 use crate::nailvideo::run::plan::{plan, steps};
 use crate::stages::Step;
 use crate::table::TableFormat;
-use crate::video::Header;
 
 const FRAMES: &str = "frames";
 const REPORT: &str = "report";
@@ -75,13 +74,8 @@ impl Job for NailVideoJob {
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
-        let known = Foreseen::of(inputs, "video").filter(|video| video.exists);
-        let (width, height, frames) = match known.and_then(|video| Header::read(&video.path).ok()) {
-            Some(header) => (header.width, header.height, header.declared_frames.unwrap_or(TYPICAL_FRAMES)),
-            None => (1280, 720, TYPICAL_FRAMES),
-        };
-        let pixels = (width * height) as f64;
-        ((BYTES_A_PIXEL * pixels) as u64 + BYTES_AT_LEAST, frames as f64 * (S_A_FRAME + S_A_PIXEL * pixels))
+        let (frames, pixels) = Foreseen::of_video(inputs, "video");
+        ((BYTES_A_PIXEL * pixels) as u64 + BYTES_AT_LEAST, frames * (S_A_FRAME + S_A_PIXEL * pixels))
     }
 
     fn file(&self, part: &Part) -> &'static str {
@@ -112,8 +106,6 @@ impl Job for NailVideoJob {
     }
 }
 
-/// Frames of a video whose header does not say how many it has.
-const TYPICAL_FRAMES: u64 = 1800;
 /// Memory and time (assumed, from videos of 640 x 480).
 const BYTES_A_PIXEL: f64 = 60.0;
 const BYTES_AT_LEAST: u64 = 96 << 20;

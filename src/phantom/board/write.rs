@@ -12,7 +12,7 @@ use super::place::rodrigues;
 use super::{BoardOptions, Picture, Scene, View};
 use crate::figure::encode_png;
 use crate::job::Watch;
-use crate::phantom::scene::place::{Error, Unwritten, refused, staged};
+use crate::phantom::scene::place::{Error, Unwritten, refused, staged, write_record};
 use crate::table::{Column, TableWriter, Value};
 
 /// The file that says that a folder was written here.
@@ -98,10 +98,9 @@ fn write_truth(scene: &Scene, named: &[(String, &View)], stage: &Path) -> Result
     }
     corners.finish()?;
     views.finish()?;
-    let (camera, record) = (stage.join(CAMERA), stage.join(RECORD));
+    let camera = stage.join(CAMERA);
     fs::write(&camera, camera_toml(&scene.options)).map_err(refused(&camera))?;
-    let text = serde_json::to_vec_pretty(&scene.options).map_err(|why| refused(&record)(why.into()))?;
-    Ok(fs::write(&record, text).map_err(refused(&record))?)
+    Ok(write_record(&stage.join(RECORD), &scene.options)?)
 }
 
 /// The true lens, as marker files have it.

@@ -11,7 +11,7 @@ use super::lines::{cells, columns};
 use super::truth::{TruthWriter, write_contacts};
 use super::{LogOptions, LogScene, SensorModel};
 use crate::files::Staging;
-use crate::phantom::scene::place::{Error, refused, staged};
+use crate::phantom::scene::place::{Error, refused, staged, write_record};
 use crate::table::TableWriter;
 
 /// The file that says that a log was written here.
@@ -56,7 +56,7 @@ fn write_staged(scene: &LogScene, staging: Staging) -> Result<[usize; 2], Error>
     let counts = write_rows(scene, &log, &true_log)?;
     write_angles(scene, &angles)?;
     write_contacts(scene.options(), &contacts)?;
-    write_record(scene, counts[0], &record)?;
+    write_record(&record, &record_of(scene, counts[0]))?;
     staging.commit_exactly(&RESULTS)?;
     Ok(counts)
 }
@@ -79,7 +79,7 @@ pub(in crate::phantom) fn write_rows(scene: &LogScene, log: &Path, true_log: &Pa
     Ok([rows, lit])
 }
 
-fn write_record(scene: &LogScene, rows: usize, path: &Path) -> Result<(), Error> {
+fn record_of(scene: &LogScene, rows: usize) -> serde_json::Value {
     let mut record = serde_json::json!({
         "options": scene.options(),
         "rows": rows,
@@ -97,6 +97,5 @@ fn write_record(scene: &LogScene, rows: usize, path: &Path) -> Result<(), Error>
     if !scene.options().disturbances.is_none() {
         record["disturbances"] = serde_json::json!(scene.disturbances());
     }
-    let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
-    Ok(fs::write(path, text).map_err(refused(path))?)
+    record
 }

@@ -23,7 +23,7 @@
 
 use std::f64::consts::TAU;
 
-use lunula_predictor::Spiral;
+use lunula_predictor::{Spiral, smooth};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -130,12 +130,6 @@ pub struct Contact {
     turn: [f64; 2],
     /// How far J1, J2, J3 bend, radians.
     bend_rad: [f64; 3],
-}
-
-/// From 0 at 0 to 1 at 1 with slopes of 0.
-fn smooth(x: f64) -> f64 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
 }
 
 impl Contact {

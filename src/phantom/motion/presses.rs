@@ -4,6 +4,7 @@
 //! 0 within 0.1 s of the onset and falls to 0 within 0.05 s of the release (assumed; a finger that lets go takes 0.06 s
 //! and more, but refill starts with the release, which should be a moment). There is no shear.
 
+use lunula_predictor::smooth;
 use serde::Serialize;
 
 /// How long a press rises and falls, seconds.
@@ -54,10 +55,6 @@ impl Presses {
         if since_s <= 0.0 {
             return [0.0; 3];
         }
-        let smooth = |x: f64| {
-            let x = x.clamp(0.0, 1.0);
-            x * x * (3.0 - 2.0 * x)
-        };
         let within_s = since_s % (self.held_s + self.pause_s);
         let held = smooth(within_s / RISE_S) * (1.0 - smooth((within_s - self.held_s) / FALL_S));
         [0.0, 0.0, -self.peak_n * held]

@@ -6,6 +6,7 @@
 
 use std::f64::consts::TAU;
 
+use lunula_predictor::smooth;
 use rand::RngExt;
 use serde::Serialize;
 
@@ -141,12 +142,6 @@ impl Track {
             away_px.map(|away| gone * away)
         })
     }
-}
-
-/// From 0 at 0 to 1 at 1 with slopes of 0.
-fn smooth(x: f64) -> f64 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::{FrameTruth, NailVideoOptions, Scene};
 use crate::job::Watch;
 use crate::phantom::log::write_rows;
 use crate::phantom::photos::{annotation, write_npy};
-use crate::phantom::scene::place::{Error, refused, staged};
+use crate::phantom::scene::place::{Error, refused, staged, write_record};
 use crate::phantom::scene::reel::draw_and_encode;
 use crate::phantom::sensor::disc_samples;
 use crate::phantom::video::{Siting, TICKS_PER_S};
@@ -93,7 +93,7 @@ pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Sum
     let [log_rows, _] = write_rows(&scene.log, &log, &true_log)?;
     let gone = write_frames(scene, &frames)?;
     write_presses(scene.options(), &presses)?;
-    write_record(scene, &record)?;
+    write_record(&record, &record_of(scene))?;
     write_normalized(scene, &normalized)?;
     let bytes = fs::metadata(&video).map_err(refused(&video))?.len();
     staging.commit_exactly(&RESULTS)?;
@@ -183,8 +183,8 @@ fn write_normalized(scene: &Scene, folder: &Path) -> Result<(), Error> {
     })
 }
 
-fn write_record(scene: &Scene, path: &Path) -> Result<(), Error> {
-    let record = serde_json::json!({
+fn record_of(scene: &Scene) -> serde_json::Value {
+    serde_json::json!({
         "options": scene.options(),
         "frames": scene.frames(),
         "ticks_per_s": TICKS_PER_S,
@@ -192,7 +192,5 @@ fn write_record(scene: &Scene, path: &Path) -> Result<(), Error> {
         "nail_width_px": scene.nail().width_px(),
         "nail_length_px": scene.nail().length_px(),
         "log": scene.log.options(),
-    });
-    let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
-    Ok(fs::write(path, text).map_err(refused(path))?)
+    })
 }

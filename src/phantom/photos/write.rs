@@ -21,7 +21,7 @@ use super::{
 use crate::job::Watch;
 use crate::phantom::{
     nail::Pose,
-    scene::place::{Error, PHOTOS_RECORD as RECORD, refused, staged},
+    scene::place::{Error, PHOTOS_RECORD as RECORD, refused, staged, write_record},
 };
 
 /// What is true of one photograph; a row of `truth/nails.csv`.
@@ -135,9 +135,7 @@ fn draw_all(options: &PhotoOptions, stage: &Path, watch: &Watch<'_>) -> Result<S
         write_npy(&maps_folder.join(format!("{pose}-count.npy")), maps.count())?;
     }
     write_table(&stage.join("truth/nails.csv"), &summary.photographs)?;
-    let record = stage.join(RECORD);
-    let text = serde_json::to_vec_pretty(options).map_err(|e| refused(&record)(e.into()))?;
-    fs::write(&record, text).map_err(refused(&record))?;
+    write_record(&stage.join(RECORD), options)?;
     Ok(summary)
 }
 

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::files::{Staging, WriteError};
@@ -73,6 +74,15 @@ pub struct Unwritten {
 pub fn refused(path: &Path) -> impl FnOnce(io::Error) -> Unwritten {
     let path = path.to_owned();
     move |source| Unwritten { path, source }
+}
+
+/// Writes a record as JSON.
+///
+/// # Errors
+/// The file can't be written.
+pub fn write_record(path: &Path, record: &impl Serialize) -> Result<(), Unwritten> {
+    let text = serde_json::to_vec_pretty(record).map_err(|why| refused(path)(why.into()))?;
+    std::fs::write(path, text).map_err(refused(path))
 }
 
 /// A hidden folder beside `out` for `names`, unless some of them are there and not `whose`: as [`in_the_way`].

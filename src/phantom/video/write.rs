@@ -11,7 +11,7 @@ use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::files::Staging;
 use crate::job::Watch;
-use crate::phantom::scene::place::{Error, refused, staged};
+use crate::phantom::scene::place::{Error, refused, staged, write_record};
 use crate::phantom::scene::reel::draw_and_encode;
 use crate::table::{Column, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture};
@@ -87,7 +87,7 @@ fn write_staged(scene: &Scene, staging: Staging, watch: &Watch<'_>) -> Result<Su
     encode(scene, &video, watch, &mut stages)?;
     let start = Instant::now();
     write_truth(scene, &truth)?;
-    write_record(scene, &stage.join(RECORD))?;
+    write_record(&stage.join(RECORD), &record_of(scene))?;
     let markers = stage.join("markers.toml");
     fs::write(&markers, scene.markers_toml()).map_err(refused(&markers))?;
     stages.truth_s = start.elapsed().as_secs_f64();
@@ -199,14 +199,12 @@ fn start(folder: &Path, name: &str, columns: &[Column]) -> Result<TableWriter, E
     Ok(TableWriter::create(&path, &path, columns.to_vec(), &[])?)
 }
 
-fn write_record(scene: &Scene, path: &Path) -> Result<(), Error> {
-    let record = serde_json::json!({
+fn record_of(scene: &Scene) -> serde_json::Value {
+    serde_json::json!({
         "options": scene.options(),
         "frames": scene.frames(),
         "ticks_per_s": TICKS_PER_S,
         "markers": scene.markers(),
         "distractors": scene.distractors,
-    });
-    let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
-    Ok(fs::write(path, text).map_err(refused(path))?)
+    })
 }

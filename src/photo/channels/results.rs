@@ -1,7 +1,7 @@
 //! The comparison's files: `channels.csv` and the chart.
 
 use super::compare::{ChannelFigures, ChannelRow, ZonesOf};
-use crate::figure::{Axis, Bar, Chart, Item, draw_charts};
+use crate::figure::{Bar, Chart, Item, draw_charts};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Channel;
 
@@ -100,14 +100,7 @@ fn charts(figures: &ChannelFigures) -> Vec<Chart> {
             .collect();
         items.extend([Item::Names(names), Item::Room(room.clone())]);
         let whose = tone.map_or_else(|| "all subjects".to_owned(), |tone| format!("skin tone {tone}"));
-        Chart {
-            title: format!("White less red zones: {whose}"),
-            x: Axis { label: String::new() },
-            y: Axis { label: "contrast, % of full scale".into() },
-            from_zero: true,
-            items,
-            height: 420,
-        }
+        Chart::new(format!("White less red zones: {whose}"), "", "contrast, % of full scale", items, 420).from_zero()
     };
     tones.into_iter().take(1 + MOST_CHARTS).map(chart).collect()
 }

@@ -213,13 +213,7 @@ impl OutlineOptions {
         let annotation = annotated::read(file, picture, self.drawn)?;
         for annotated in annotation.nails {
             nails.push(match annotated.outline {
-                Ok(outline) => Nail {
-                    source: Source::Annotated,
-                    outline: Some(outline),
-                    axis: annotated.axis,
-                    confidence: Some(1.0),
-                    reason: String::new(),
-                },
+                Ok(outline) => drawn(Source::Annotated, outline, annotated.axis),
                 // A row of the results does not depend on where the photographs are.
                 Err(fault) => {
                     let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -248,17 +242,8 @@ impl OutlineOptions {
         }
         .map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
         let too_large = regions.too_large(f64::from(mask.width()) * f64::from(mask.height()));
-        let mut nails: Vec<Nail> = regions
-            .nails
-            .into_iter()
-            .map(|outline| Nail {
-                source: Source::Mask,
-                outline: Some(outline),
-                axis: None,
-                confidence: Some(1.0),
-                reason: String::new(),
-            })
-            .collect();
+        let mut nails: Vec<Nail> =
+            regions.nails.into_iter().map(|outline| drawn(Source::Mask, outline, None)).collect();
         self.complete_axes(picture, &mut nails);
         for (nail, why) in nails.iter_mut().zip(too_large) {
             if let Some(why) = why {
@@ -387,6 +372,10 @@ impl OutlineOptions {
 /// A confidence in words, cut off rather than rounded: 0.499 is less than 0.5.
 pub(crate) fn hundredths(confidence: f64) -> String {
     format!("{:.2}", (100.0 * confidence).floor() / 100.0)
+}
+
+fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Nail {
+    Nail { source, outline: Some(outline), axis, confidence: Some(1.0), reason: String::new() }
 }
 
 fn left_out(source: Source, outline: Option<Outline>, reason: String) -> Nail {

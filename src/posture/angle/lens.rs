@@ -147,17 +147,8 @@ mod tests {
     use super::*;
 
     fn lens(distortion: &[f64]) -> Lens {
-        let mut all = [0.0; 12];
-        all[..distortion.len()].copy_from_slice(distortion);
-        let camera = Camera {
-            size_px: None,
-            fx_px: 1200.0,
-            fy_px: Some(1180.0),
-            cx_px: Some(640.5),
-            cy_px: Some(355.25),
-            distortion: all,
-            plane: None,
-        };
+        let camera =
+            Camera { fy_px: Some(1180.0), cx_px: Some(640.5), cy_px: Some(355.25), ..Camera::of(1200.0, distortion) };
         Lens::new(&camera, (1280, 720), 1.0)
     }
 
@@ -260,15 +251,7 @@ mod tests {
 
     #[test]
     fn no_distortion_changes_nothing() {
-        let camera = Camera {
-            size_px: None,
-            fx_px: 900.0,
-            fy_px: None,
-            cx_px: None,
-            cy_px: None,
-            distortion: [0.0; 12],
-            plane: None,
-        };
+        let camera = Camera::of(900.0, &[]);
         let plain = Lens::new(&camera, (641, 481), 1.0).undistort([12.5, 470.0]).unwrap();
         assert!((plain.at_px[0] - 12.5).abs() <= 1e-12 && (plain.at_px[1] - 470.0).abs() <= 1e-12);
         assert_eq!(plain.jacobian, [[1.0, 0.0], [0.0, 1.0]]);

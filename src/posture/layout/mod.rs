@@ -85,6 +85,16 @@ pub struct Camera {
     pub plane: Option<[f64; 3]>,
 }
 
+#[cfg(test)]
+impl Camera {
+    /// One of this focal length that looks straight through the picture's middle.
+    pub(in crate::posture) fn of(fx_px: f64, distortion: &[f64]) -> Self {
+        let mut all = [0.0; 12];
+        all[..distortion.len()].copy_from_slice(distortion);
+        Self { size_px: None, fx_px, fy_px: None, cx_px: None, cy_px: None, distortion: all, plane: None }
+    }
+}
+
 /// A marker file, checked.
 ///
 /// ```

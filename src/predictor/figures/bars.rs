@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::{WIDTH, three_digits};
-use crate::figure::{Axis, Bar, Chart, Item, draw_charts};
+use crate::figure::{Bar, Chart, Item, draw_charts};
 
 /// Of a group's width, what its bars take.
 const TAKEN: f64 = 0.8;
@@ -85,14 +85,7 @@ fn chart(bars: &Bars) -> Chart {
         let known = series.values.iter().take(bars.groups.len()).enumerate().filter_map(bar).collect();
         items.push(Item::Bars { name: Some(series.name.clone()), bars: known, colour });
     }
-    Chart {
-        title: bars.title.clone(),
-        x: Axis { label: bars.x_label.clone() },
-        y: Axis { label: bars.y_label.clone() },
-        from_zero: true,
-        items,
-        height: HEIGHT_PX,
-    }
+    Chart::new(bars.title.clone(), bars.x_label.clone(), bars.y_label.clone(), items, HEIGHT_PX).from_zero()
 }
 
 /// Draws the RMSE of each target by the size of the force, in `unit` (`N`).

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::WIDTH;
-use crate::figure::{Axis, Chart, Item, draw_charts};
+use crate::figure::{Chart, Item, draw_charts};
 
 /// Height of the pictures, pixels.
 const HEIGHT_PX: u32 = 600;
@@ -77,14 +77,7 @@ pub(in crate::predictor) fn draw_best_subsets(
             above: !(series.len() > 1 && lowest(series, subset)),
         }));
     }
-    let chart = Chart {
-        title: title.to_owned(),
-        x: Axis { label: "number of photodiodes".to_owned() },
-        y: Axis { label: y_label.to_owned() },
-        from_zero: true,
-        items,
-        height: HEIGHT_PX,
-    };
+    let chart = Chart::new(title, "number of photodiodes", y_label, items, HEIGHT_PX).from_zero();
     draw_charts(&[chart], WIDTH, png, svg)
 }
 
@@ -127,13 +120,6 @@ pub(in crate::predictor) fn draw_learning_curve(
         items.push(Item::Line { name: Some(one.name.clone()), runs: vec![points.clone()], colour, width: 2 });
         items.push(Item::Dots { name: None, points, colour });
     }
-    let chart = Chart {
-        title: title.to_owned(),
-        x: Axis { label: x_label.to_owned() },
-        y: Axis { label: y_label.to_owned() },
-        from_zero: true,
-        items,
-        height: HEIGHT_PX,
-    };
+    let chart = Chart::new(title, x_label, y_label, items, HEIGHT_PX).from_zero();
     draw_charts(&[chart], WIDTH, png, svg)
 }

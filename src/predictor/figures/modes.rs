@@ -6,7 +6,7 @@ use std::path::Path;
 use ndarray::ArrayView2;
 
 use super::{quantity, three_digits};
-use crate::figure::{Axis, Bar, Chart, Item, draw_panels};
+use crate::figure::{Bar, Chart, Item, draw_panels};
 
 /// Width and heights of panels, pixels.
 const PANEL_PX: u32 = 470;
@@ -61,18 +61,17 @@ fn panel(
 ) -> Chart {
     let bars = values.enumerate().map(|(k, value)| Bar { at: k as f64, width: 0.7, value, error: None }).collect();
     let last = names.len().max(1) as f64 - 0.5;
-    Chart {
+    Chart::new(
         title,
-        x: Axis { label: String::new() },
+        "",
         // Panels beside the first have the same axis.
-        y: Axis { label: if column == 0 { y.to_owned() } else { " ".to_owned() } },
-        from_zero: false,
-        items: vec![
+        if column == 0 { y } else { " " },
+        vec![
             Item::Room(vec![[-0.5, -1.0], [last, 1.0]]),
             Item::Names(names.iter().enumerate().map(|(k, name)| (k as f64, name.clone())).collect()),
             Item::Bars { name: None, bars, colour: row },
             Item::Line { name: None, runs: vec![vec![[-0.5, 0.0], [last, 0.0]]], colour: row, width: 1 },
         ],
-        height: HEIGHTS_PX[row],
-    }
+        HEIGHTS_PX[row],
+    )
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::{Predicted, WIDTH, quantity, three_digits, unit};
-use crate::figure::{Axis, Chart, Item, MOST_BINS, Thinned, draw_charts};
+use crate::figure::{Chart, Item, MOST_BINS, Thinned, draw_charts};
 use crate::median::median_of;
 
 /// Height of a panel, pixels.
@@ -83,14 +83,13 @@ fn panel(all: &Predicted<'_>, line: &TimeLine, target: usize, title: &str) -> Ch
         Some(quantity(column).split(',').next().unwrap_or_default().to_owned()),
     ];
     let head = parts.into_iter().flatten().collect::<Vec<_>>().join(": ");
-    Chart {
-        title: rmse.map_or(head.clone(), |rmse| format!("{head}, {rmse}")),
-        x: Axis { label: if last { line.label.clone() } else { String::new() } },
-        y: Axis { label: quantity(column) },
-        from_zero: false,
+    Chart::new(
+        rmse.map_or(head.clone(), |rmse| format!("{head}, {rmse}")),
+        if last { line.label.as_str() } else { "" },
+        quantity(column),
         items,
-        height: PANEL_PX + if first { 40 } else { 0 } + if last { 20 } else { 0 },
-    }
+        PANEL_PX + if first { 40 } else { 0 } + if last { 20 } else { 0 },
+    )
 }
 
 /// Where each row stands on the horizontal axis.

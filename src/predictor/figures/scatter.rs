@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::{Predicted, quantity, three_digits, unit};
-use crate::figure::{Axis, Chart, Item, draw_panels};
+use crate::figure::{Chart, Item, draw_panels};
 
 /// Width and height of a panel, pixels: the axes are square within it.
 const PANEL_PX: (u32, u32) = (536, 534);
@@ -34,14 +34,13 @@ pub(in crate::predictor) fn draw_scatter(
             .rmse(target)
             .map_or("no row is known".to_owned(), |(rmse, _)| format!("RMSE {}{}", three_digits(rmse), unit(column)));
         let before = if target == 0 && !title.is_empty() { format!("{title}: ") } else { String::new() };
-        Chart {
-            title: format!("{before}{short}, {rmse}"),
-            x: Axis { label: format!("measured {name}") },
-            y: Axis { label: format!("predicted {name}") },
-            from_zero: false,
-            items: vec![Item::Dots { name: None, points: thinned(points), colour: 0 }, Item::Diagonal { name: None }],
-            height: PANEL_PX.1,
-        }
+        Chart::new(
+            format!("{before}{short}, {rmse}"),
+            format!("measured {name}"),
+            format!("predicted {name}"),
+            vec![Item::Dots { name: None, points: thinned(points), colour: 0 }, Item::Diagonal { name: None }],
+            PANEL_PX.1,
+        )
     };
     let charts: Vec<Chart> = (0..all.targets.len()).map(panel).collect();
     draw_panels(&charts, COLUMNS, PANEL_PX.0, png, svg)

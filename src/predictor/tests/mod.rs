@@ -10,6 +10,22 @@ use lunula_predictor::{By, Gate, Kind, OnScores, Recipe};
 
 use super::*;
 
+/// Rows of a force and an angle seen by three photodiodes; `timed`: with a column of times.
+pub(crate) fn recording(rows: u32, phase: f64, scale: f64, timed: bool) -> String {
+    let mut text = if timed { "time_s," } else { "" }.to_owned() + "P1,P2,P3,Fx_N,Fy_N,Fz_N,J2_deg\n";
+    for k in 0..rows {
+        let t = f64::from(k) * 0.04;
+        let [a, b, c] = [3.1, 5.3, 7.7].map(|rate| (rate * t + phase).sin());
+        let noise = [0.01, 0.02].map(|size| size * (97.0 * t + phase).sin());
+        let volts = [2.0 + a + noise[0], 2.0 + b - c, 2.0 + c + noise[1]].map(|volt| volt * scale);
+        if timed {
+            write!(text, "{t},").unwrap();
+        }
+        writeln!(text, "{:?},{:?},{:?},{a},{b},{},{}", volts[0], volts[1], volts[2], -1.0 - c, 20.0 * b).unwrap();
+    }
+    text
+}
+
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -21,21 +37,10 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Rows of a force and an angle seen by three photodiodes; `timed`: with a column of times.
+    /// A recording of 60 rows.
     fn file(&self, name: &str, phase: f64, scale: f64, timed: bool) -> PathBuf {
-        let mut text = if timed { "time_s," } else { "" }.to_owned() + "P1,P2,P3,Fx_N,Fy_N,Fz_N,J2_deg\n";
-        for k in 0..60 {
-            let t = f64::from(k) * 0.04;
-            let [a, b, c] = [3.1, 5.3, 7.7].map(|rate| (rate * t + phase).sin());
-            let noise = [0.01, 0.02].map(|size| size * (97.0 * t + phase).sin());
-            let volts = [2.0 + a + noise[0], 2.0 + b - c, 2.0 + c + noise[1]].map(|volt| volt * scale);
-            if timed {
-                write!(text, "{t},").unwrap();
-            }
-            writeln!(text, "{:?},{:?},{:?},{a},{b},{},{}", volts[0], volts[1], volts[2], -1.0 - c, 20.0 * b).unwrap();
-        }
         let path = self.path(name);
-        std::fs::write(&path, text).unwrap();
+        std::fs::write(&path, recording(60, phase, scale, timed)).unwrap();
         path
     }
 

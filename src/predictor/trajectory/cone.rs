@@ -4,9 +4,9 @@
 //! Fy into the depth.
 
 use super::TrajectoryOptions;
-use super::figures::{chart, is_near, line, moments};
+use super::figures::{is_near, line, moments};
 use super::motion::ForceMotion;
-use crate::figure::{Item, draw_charts};
+use crate::figure::{Chart, Item, draw_charts};
 
 /// Width and height.
 const SIZE: (u32, u32) = (760, 700);
@@ -58,7 +58,7 @@ pub(super) fn draw_cone(
     ];
     let x = "Fx, N (Fy goes into the depth)";
     draw_charts(
-        &[chart("The cone of friction, and the trajectory within", x, "pressing, N", items, SIZE.1)],
+        &[Chart::new("The cone of friction, and the trajectory within", x, "pressing, N", items, SIZE.1)],
         SIZE.0,
         png,
         svg,

@@ -4,7 +4,7 @@ use lunula_predictor::Spiral;
 
 use super::TrajectoryOptions;
 use super::motion::{ForceMotion, Path};
-use crate::figure::{Axis, Chart, Item, draw_charts};
+use crate::figure::{Chart, Item, draw_charts};
 
 const WIDTH: u32 = 1400;
 const HEIGHT: u32 = 380;
@@ -23,11 +23,6 @@ pub(super) fn moments(options: &TrajectoryOptions) -> impl Iterator<Item = f64> 
 
 pub(super) fn line(name: Option<&str>, points: Vec<[f64; 2]>, colour: usize, width: u32) -> Item {
     Item::Line { name: name.map(str::to_owned), runs: vec![points], colour, width }
-}
-
-pub(super) fn chart(title: &str, x: &str, y: &str, items: Vec<Item>, height: u32) -> Chart {
-    let axis = |label: &str| Axis { label: label.to_owned() };
-    Chart { title: title.to_owned(), x: axis(x), y: axis(y), from_zero: false, items, height }
 }
 
 /// Whether two points fall together on a chart of this size.
@@ -68,7 +63,7 @@ pub(super) fn draw_path(
     items.extend(runs.into_iter().enumerate().map(|(colour, runs)| Item::Line { name: None, runs, colour, width: 2 }));
     let thirds = (0..3).map(|k| format!("{} to {:.3} N", COLOURS[k], third_n * (k + 1) as f64)).collect::<Vec<_>>();
     let title = format!("Shear; pressing {}", thirds.join(", ")).replace(".000", "");
-    let chart = chart(&title, "Fx, N", "Fy, N", items, PATH.1);
+    let chart = Chart::new(title, "Fx, N", "Fy, N", items, PATH.1);
     draw_charts(&[chart], PATH.0, png, svg)
 }
 
@@ -105,9 +100,9 @@ pub(super) fn draw_forces(
         line(Some("Fz, pressing is negative"), component(2), 2, 2),
     ];
     let charts = [
-        chart(&title(options, motion.spiral.as_ref()), "time, s", "force, N", components, HEIGHT),
-        chart("Shear over time", "time, s", shear, in_time, HEIGHT),
-        chart("Shear over pressing", "pressing, N", shear, in_space, HEIGHT),
+        Chart::new(title(options, motion.spiral.as_ref()), "time, s", "force, N", components, HEIGHT),
+        Chart::new("Shear over time", "time, s", shear, in_time, HEIGHT),
+        Chart::new("Shear over pressing", "pressing, N", shear, in_space, HEIGHT),
     ];
     draw_charts(&charts, WIDTH, png, svg)
 }
@@ -134,6 +129,6 @@ pub(super) fn draw_posture(
         Path::Bending(bending) => format!("Bending (equation 27) at {} Hz", bending.hz),
         Path::Random(_) => "Random bending".to_owned(),
     };
-    let chart = chart(&title, "time, s", "J2, degrees of flexion", vec![line(None, points, 0, 2)], 420);
+    let chart = Chart::new(title, "time, s", "J2, degrees of flexion", vec![line(None, points, 0, 2)], 420);
     draw_charts(&[chart], WIDTH, png, svg)
 }

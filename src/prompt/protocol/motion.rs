@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use lunula_predictor::{Bending, RELEASE_S, RandomBending, RandomForce, Spiral};
+use lunula_predictor::{Bending, RELEASE_S, RandomBending, RandomForce, Spiral, smooth};
 
 use crate::words::Words;
 
@@ -151,12 +151,6 @@ impl Motion {
             _ => 0.0,
         }
     }
-}
-
-/// From 0 to 1 between 0 and 1, with slope 0 at both ends.
-fn smooth(x: f64) -> f64 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
 }
 
 /// The force at a time on the lines through points; before the first and after the last it stays there.

@@ -61,14 +61,7 @@ pub(super) fn measure(
     let found = in_turns(&INTERVALS, &settings.effort, |(_, intervals), first| {
         let inputs = AlignInputs { joints: gappy.clone(), log: settings.log.clone(), tracks: None };
         let options = AlignOptions { max_gap_s: intervals.map(|n| n * interval_s), ..AlignOptions::default() };
-        let outputs = AlignOutputs {
-            training: training.clone(),
-            mot: None,
-            bids: None,
-            dlc: None,
-            figures: false,
-            report: false,
-        };
+        let outputs = AlignOutputs::only(training.clone());
         let report = one.install(|| run_align(&inputs, &options, &outputs, &Watch::nobody()))?;
         Ok((report.wall_s, first.then(|| labels.error(&training)).transpose()?))
     })?;

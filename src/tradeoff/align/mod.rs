@@ -123,14 +123,7 @@ fn correlated(joints: &Path, truth: &[f64], first: bool, settings: &Settings) ->
     let lag =
         LagTie { search: LagSearch { about_s, most_s: Some(KNOWN_S), ..LagSearch::default() }, sensor_lag_s: None };
     let options = AlignOptions { sync: Some(Sync::Correlate), lag, ..AlignOptions::default() };
-    let outputs = AlignOutputs {
-        training: folder.path().join("training.csv"),
-        mot: None,
-        bids: None,
-        dlc: None,
-        figures: false,
-        report: false,
-    };
+    let outputs = AlignOutputs::only(folder.path().join("training.csv"));
     let report = run_align(&inputs, &options, &outputs, &Watch::nobody())?;
     let seconds = report.stages.iter().filter(|s| s.stage == "tie").map(|s| s.thread_s).sum();
     if !first {

@@ -5,7 +5,7 @@ use std::path::Path;
 use lunula_hemodynamics::{Collapse, Fate, Inputs, LoadPath, MapPlan, MapRow, Parameters, Site, Symbol, stability_row};
 use rayon::prelude::*;
 
-use crate::figure::{Axis, Chart, Item, draw_panels};
+use crate::figure::{Chart, Item, draw_panels};
 use crate::files::Staging;
 use crate::table::{Column, TableWriter, Value};
 
@@ -118,13 +118,11 @@ fn chart(map: &Map) -> Chart {
             items.push(Item::Line { name: Some(name.to_owned()), runs: Vec::new(), colour, width: 4 });
         }
     }
-    let axis = |label: String| Axis { label };
-    Chart {
-        title: format!("{}, {} load{}", map.varied, map.pressed, if map.pressed == "both" { "s" } else { "" }),
-        x: axis("load, N/cm2".to_owned()),
-        y: axis(format!("log10 of the factor on {}", map.varied)),
-        from_zero: false,
+    Chart::new(
+        format!("{}, {} load{}", map.varied, map.pressed, if map.pressed == "both" { "s" } else { "" }),
+        "load, N/cm2",
+        format!("log10 of the factor on {}", map.varied),
         items,
-        height: 420,
-    }
+        420,
+    )
 }

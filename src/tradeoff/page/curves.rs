@@ -1,6 +1,6 @@
 //! A job's curves as panels: settings, other programs, the front, knee and default.
 
-use crate::figure::{Axis, Chart, Item, Mark, MarkShape, Point};
+use crate::figure::{Chart, Item, Mark, MarkShape, Point};
 use crate::tradeoff::judge::{Tradeoff, Verdict, is_on};
 use crate::tradeoff::measure::rows::Row;
 use crate::tradeoff::peers::program;
@@ -28,14 +28,7 @@ pub(in crate::tradeoff) fn chart(
     let points =
         |(colour, one): (usize, Series)| Item::Points { name: one.name, points: one.points, hollow: one.peer, colour };
     let items = std::iter::once(Item::Path(front)).chain(series.into_iter().enumerate().map(points));
-    Chart {
-        title,
-        x: Axis { label: x },
-        y: Axis { label: y },
-        from_zero: false,
-        items: items.chain(marks.into_iter().map(Item::Mark)).collect(),
-        height: PANEL_PX.1,
-    }
+    Chart::new(title, x, y, items.chain(marks.into_iter().map(Item::Mark)).collect(), PANEL_PX.1)
 }
 
 /// A panel for each curve that has a point on logarithmic axes.

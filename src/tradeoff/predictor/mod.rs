@@ -193,11 +193,8 @@ fn fewer(
 
 fn name(kind: Kind, restarts: usize) -> String {
     match kind {
-        Kind::Linear => "linear".to_owned(),
-        Kind::Quadratic => "quadratic".to_owned(),
-        Kind::Network { hidden } if restarts == 1 => format!("network of {hidden}"),
-        Kind::Network { hidden } => format!("network of {hidden}, {restarts} starts"),
-        Kind::Eigennails { .. } => "eigennails".to_owned(),
+        Kind::Network { .. } if restarts != 1 => format!("{kind}, {restarts} starts"),
+        _ => kind.to_string(),
     }
 }
 

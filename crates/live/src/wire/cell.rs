@@ -1,7 +1,25 @@
-//! Cells that are no plain numbers: missing ones, and whether an LED was on.
+//! Cells of text: bare of quotes, missing, names, with a decimal comma, and whether an LED was on.
 
 /// The words that say that a number is missing, without regard to case; those with `#` are a spreadsheet's.
 const MISSING: [&str; 9] = ["nan", "na", "n/a", "null", "#n/a", "#num!", "#value!", "#div/0!", "#ref!"];
+
+/// A cell without space and double quotes around it.
+#[must_use]
+pub fn bare(cell: &[u8]) -> &[u8] {
+    let cell = cell.trim_ascii();
+    match cell {
+        [b'"', inside @ .., b'"'] => inside.trim_ascii(),
+        _ => cell,
+    }
+}
+
+/// Whether a cell may be a name: it does not look like a number, nor like something cut off from one.
+#[must_use]
+pub fn is_name(cell: &str) -> bool {
+    !cell.is_empty()
+        && cell.replace(',', ".").parse::<f64>().is_err()
+        && !cell.starts_with(|c: char| c.is_ascii_digit())
+}
 
 /// Whether a cell is empty or says that nothing is known.
 #[must_use]
@@ -51,7 +69,8 @@ pub(in crate::wire) fn plain(cell: &[u8]) -> Option<f64> {
 }
 
 /// The finite number in a cell with a decimal comma.
-pub(in crate::wire) fn with_decimal_comma(cell: &[u8]) -> Option<f64> {
+#[must_use]
+pub fn with_decimal_comma(cell: &[u8]) -> Option<f64> {
     // Longer than any number that a program writes.
     let mut text = [0; 64];
     let text = text.get_mut(..cell.len())?;

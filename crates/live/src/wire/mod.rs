@@ -11,7 +11,7 @@ mod lines;
 mod row;
 mod spoilt;
 
-pub use cell::{is_missing, led, led_of};
+pub use cell::{bare, is_missing, is_name, led, led_of, with_decimal_comma};
 pub use checksum::{Checksum, crc16, xor8};
 pub use fault::WireFault;
 pub use frames::{FRAME_NAMES, Frame, Frames, WIRE_BYTES};

@@ -5,6 +5,7 @@
 //! Those rows are training rows all the same: what is reported has to come from others.
 
 use std::borrow::Cow;
+use std::fmt;
 
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,17 @@ pub enum Kind {
         /// How many modes; none: as many as do best on rows left out.
         modes: Option<usize>,
     },
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Linear => f.write_str("linear"),
+            Self::Quadratic => f.write_str("quadratic"),
+            Self::Network { hidden } => write!(f, "network of {hidden}"),
+            Self::Eigennails { .. } => f.write_str("eigennails"),
+        }
+    }
 }
 
 /// What to fit and how.

@@ -34,7 +34,8 @@ pub use spiral::{RELEASE_S, Spiral};
 pub use wave::Wave;
 
 /// From 0 to 1 between 0 and 1, with slope 0 at both ends; 0 before and 1 after.
-fn smooth(x: f64) -> f64 {
+#[must_use]
+pub fn smooth(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
 }

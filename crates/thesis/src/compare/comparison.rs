@@ -107,16 +107,6 @@ pub(super) fn over_people(found: Vec<Vec<Comparison>>) -> Result<Vec<Comparison>
     Ok(all)
 }
 
-/// A model's name in legends.
-pub(super) fn name_of(kind: Kind) -> String {
-    match kind {
-        Kind::Linear => "linear".to_owned(),
-        Kind::Quadratic => "quadratic".to_owned(),
-        Kind::Network { hidden } => format!("network of {hidden}"),
-        Kind::Eigennails { .. } => "eigennails".to_owned(),
-    }
-}
-
 /// The thesis' figure of a model's validation by what it was trained on.
 pub(super) fn figure_of(kind: Kind) -> &'static str {
     match kind {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use lunula_predictor::{Dataset, FORCES, Kind, Predictor, Recipe, every_subset, score};
 
-use crate::compare::comparison::{Comparison, figure_of, name_of};
+use crate::compare::comparison::{Comparison, figure_of};
 use crate::compare::options::{CompareOptions, Person};
 use lunula::job::Watch;
 use lunula::predictor::{POSTURE, PredictorError, Wanted, read_data};
@@ -31,7 +31,7 @@ impl Fits<'_> {
         Ok(match self.stages.time("fit", || Predictor::fit(data, None, recipe)) {
             Ok(predictor) => Some(predictor),
             Err(why) => {
-                self.warnings.push(format!("{}: no {} model: {why}", self.person, name_of(recipe.kind)));
+                self.warnings.push(format!("{}: no {} model: {why}", self.person, recipe.kind));
                 None
             }
         })
@@ -93,7 +93,7 @@ fn touch(person: &Person, options: &CompareOptions, fits: &mut Fits<'_>) -> Resu
     let (both, third, random) = (&sets[BOTH], data.only(&[THIRD]), data.only(&[RANDOM]));
     let set_names = SETS.map(|(name, _)| name.to_owned());
     let (targets, models) = (data.targets(), &options.models);
-    let model_names: Vec<String> = models.iter().map(|recipe| name_of(recipe.kind)).collect();
+    let model_names: Vec<String> = models.iter().map(|recipe| recipe.kind.to_string()).collect();
 
     let mut found = Vec::new();
     // By model, then by target.
@@ -101,7 +101,7 @@ fn touch(person: &Person, options: &CompareOptions, fits: &mut Fits<'_>) -> Resu
     for recipe in models {
         let fitted = sets.iter().map(|set| fits.fit(recipe, set)).collect::<Result<Vec<_>, _>>()?;
         let by_set = fitted.iter().map(|model| rmse(model.as_ref(), &third)).collect::<Result<Vec<_>, _>>()?;
-        let title = format!("validation of the {} touch model by what it was trained on", name_of(recipe.kind));
+        let title = format!("validation of the {} touch model by what it was trained on", recipe.kind);
         let of = |target: usize, set: usize| by_set[set][target];
         found.push(Comparison::new(figure_of(recipe.kind), title, "N", [targets, &set_names], of));
         training.push(rmse(fitted[BOTH].as_ref(), both)?);
@@ -154,7 +154,7 @@ fn posture(person: &Person, options: &CompareOptions, fits: &mut Fits<'_>) -> Re
         .map(|by_rows| by_rows.into_iter().collect::<Result<Vec<_>, _>>())
         .collect::<Result<Vec<_>, _>>()?;
     let groups = ["training", "validation", "random bending"].map(str::to_owned);
-    let models: Vec<String> = options.models.iter().map(|recipe| name_of(recipe.kind)).collect();
+    let models: Vec<String> = options.models.iter().map(|recipe| recipe.kind.to_string()).collect();
     let title = "posture models on the first half, the second half and random bending";
     Ok(Comparison::new("112", title, "degrees", [&groups, &models], |rows, model| by_model[model][rows][0]))
 }

@@ -48,7 +48,7 @@ pub fn compare(
     if people.is_empty() || options.models.is_empty() {
         return Err(PredictorError::Request("nothing is compared; name people and models".to_owned()));
     }
-    let kinds: Vec<String> = options.models.iter().map(|recipe| comparison::name_of(recipe.kind)).collect();
+    let kinds: Vec<String> = options.models.iter().map(|recipe| recipe.kind.to_string()).collect();
     if let Some(again) = (0..kinds.len()).find(|&k| kinds[..k].contains(&kinds[k])) {
         return Err(PredictorError::Request(format!("the model `{}` is there twice", kinds[again])));
     }

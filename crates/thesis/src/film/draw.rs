@@ -2,7 +2,7 @@
 
 use super::Errors;
 use super::pair::{Trace, Traces};
-use lunula::figure::{Axis, Chart, Item, draw_panels};
+use lunula::figure::{Chart, Item, draw_panels};
 use lunula::files::Staging;
 use lunula::predictor::{BarSeries, Bars, draw_bars};
 
@@ -22,7 +22,6 @@ pub(super) fn traces(traces: &Traces, staging: &Staging) -> anyhow::Result<()> {
 }
 
 fn panel(trace: &Trace, k: usize, is_last: bool) -> Chart {
-    let axis = |label: &str| Axis { label: label.to_owned() };
     let end_s = trace.camera.first().map_or(0.0, |first| first[0]) + SHOWN_S;
     let line = |points: &[[f64; 2]], colour: usize| Item::Line {
         name: (k == 0).then(|| NAMES[colour].to_owned()),
@@ -39,14 +38,13 @@ fn panel(trace: &Trace, k: usize, is_last: bool) -> Chart {
         Some(correlation) => format!("{}, correlation {correlation:.3}", trace.name),
         None => trace.name.clone(),
     };
-    Chart {
+    Chart::new(
         title,
-        x: axis(if is_last { "time, s" } else { "" }),
-        y: axis("volts"),
-        from_zero: false,
-        items: vec![line(&trace.sensor, 0), line(&trace.camera, 1)],
-        height: PANEL.1,
-    }
+        if is_last { "time, s" } else { "" },
+        "volts",
+        vec![line(&trace.sensor, 0), line(&trace.camera, 1)],
+        PANEL.1,
+    )
 }
 
 /// The errors on what is held out, with their ratio below.

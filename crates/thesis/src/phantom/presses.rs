@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use crate::section::people::{Person, Recorded};
 use lunula::hemodynamics::Pressed;
-use lunula::phantom::{refused, staged};
+use lunula::phantom::{refused, staged, write_record};
 use lunula::table::{Column, TableWriter, Value};
 
 const RECORD: &str = "truth/press.json";
@@ -53,8 +53,7 @@ pub(crate) fn write(options: &PressOptions, out: &Path) -> anyhow::Result<()> {
         table(recorded, options.site, &path)?;
     }
     fs::write(&parameters, person.parameters().to_toml()).map_err(refused(&parameters))?;
-    let text = serde_json::to_vec_pretty(&serde_json::json!({ "options": options }));
-    fs::write(&record, text.map_err(|error| refused(&record)(error.into()))?).map_err(refused(&record))?;
+    write_record(&record, &serde_json::json!({ "options": options }))?;
     Ok(staging.commit_exactly(&RESULTS)?)
 }
 

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::curve::{Curve, Point};
 use super::places::Places;
-use lunula::figure::{Axis, Cell, Chart, Item, Thinned, draw_charts, draw_grid};
+use lunula::figure::{Cell, Chart, Item, draw_charts, draw_grid};
+use lunula::hemodynamics::figures::over_time;
 
 /// A panel at its place, pixels.
 const PANEL: [u32; 2] = [420, 250];
@@ -32,32 +33,12 @@ fn ways(drive: &str) -> [String; 2] {
     }
 }
 
-fn axis(label: &str) -> Axis {
-    Axis { label: label.to_owned() }
-}
-
-/// A curve with breaks where nothing is known, thinned to what a picture shows.
-fn over_time(name: Option<String>, time_s: &[f64], values: &[f64], colour: usize) -> Item {
-    let mut thinned = Thinned::default();
-    for (&time_s, &value) in time_s.iter().zip(values).filter(|(time_s, _)| time_s.is_finite()) {
-        thinned.push(time_s, std::iter::once(value.is_finite().then_some([value, f64::NAN])));
-    }
-    Item::Line { name, runs: thinned.curve(0), colour, width: 2 }
-}
-
 /// Signals over time on one chart (Fig. 23, 26, 29).
 pub(super) fn moves(time_s: &[f64], signals: &[(&str, &[f64])], y: &str, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let items = signals.iter().enumerate().map(|(k, (name, values))| {
-        over_time(Some(name.split('_').next().unwrap_or(name).to_owned()), time_s, values, k)
+        over_time(Some(name.split('_').next().unwrap_or(name).to_owned()), time_s, values, k, 2)
     });
-    let chart = Chart {
-        title: String::new(),
-        x: axis("time, s"),
-        y: axis(y),
-        from_zero: false,
-        items: items.collect(),
-        height: 400,
-    };
+    let chart = Chart::new("", "time, s", y, items.collect(), 400);
     draw_charts(&[chart], WIDTH, png, svg)
 }
 
@@ -122,13 +103,14 @@ pub(super) fn outputs(
     let span = span(&reaches);
     let x = reach(time_s.iter().copied()).unwrap_or([0.0, 1.0]);
     let names: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
-    let panel = |k: usize| Chart {
-        title: names[k].clone(),
-        x: axis("time, s"),
-        y: axis("output, V"),
-        from_zero: false,
-        items: vec![room(reaches[k], span, x), over_time(None, time_s, outputs[k].1, 0)],
-        height: PANEL[1],
+    let panel = |k: usize| {
+        Chart::new(
+            names[k].clone(),
+            "time, s",
+            "output, V",
+            vec![room(reaches[k], span, x), over_time(None, time_s, outputs[k].1, 0, 2)],
+            PANEL[1],
+        )
     };
     let words =
         ["Photodiodes at their places on the nail,", "distal at the top, seen from above.", "One scale: the axes"]
@@ -174,14 +156,7 @@ pub(super) fn averages(
             items.push(Item::Errors { marks: marks.collect(), colour });
             items.push(Item::Line { name: None, runs: runs.collect(), colour, width: 2 });
         }
-        Chart {
-            title: curves[k].0.clone(),
-            x: axis(&words(drive)),
-            y: axis("output, V"),
-            from_zero: false,
-            items,
-            height: PANEL[1],
-        }
+        Chart::new(curves[k].0.clone(), words(drive), "output, V", items, PANEL[1])
     };
     let names: Vec<String> = curves.iter().map(|(name, _)| name.clone()).collect();
     let legs = |of: fn(&Curve) -> &Vec<Option<Point>>| {
@@ -213,12 +188,11 @@ pub(super) fn coupling(j2: &[f64], j3: &[f64], line: [f64; 2], r2: f64, png: &Pa
         if offset < 0.0 { "-" } else { "+" },
         offset.abs()
     );
-    let chart = Chart {
-        title: String::new(),
-        x: axis("J2 (proximal interphalangeal), degrees"),
-        y: axis("J3 (distal interphalangeal), degrees"),
-        from_zero: false,
-        items: vec![
+    let chart = Chart::new(
+        "",
+        "J2 (proximal interphalangeal), degrees",
+        "J3 (distal interphalangeal), degrees",
+        vec![
             Item::Dots { name: Some("rows".to_owned()), points, colour: 5 },
             Item::Line {
                 name: Some(name),
@@ -227,7 +201,7 @@ pub(super) fn coupling(j2: &[f64], j3: &[f64], line: [f64; 2], r2: f64, png: &Pa
                 width: 2,
             },
         ],
-        height: 520,
-    };
+        520,
+    );
     draw_charts(&[chart], 900, png, svg)
 }

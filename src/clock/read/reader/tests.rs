@@ -231,19 +231,21 @@ fn a_frame_close_around_a_clock_hides_no_digit() {
     }
 }
 
+/// How AM and PM are written.
+const STYLES: [fn(&str) -> String; 3] = [
+    str::to_owned,
+    |text| text.replace("AM", "am").replace("PM", "pm"),
+    |text| text.replace("AM", "A.M.").replace("PM", "P.M."),
+];
+
 #[test]
 fn am_or_pm_is_noticed_where_it_can_hardly_be_read() {
-    let styles: [fn(&str) -> String; 3] = [
-        str::to_owned,
-        |text| text.replace("AM", "am").replace("PM", "pm"),
-        |text| text.replace("AM", "A.M.").replace("PM", "P.M."),
-    ];
     // Of 540 frames; measured: 404, and none is read. Letters looked at with one threshold alone left 194 wrong.
     const LEAST: usize = 380;
     let (mut read, mut other) = (0, 0);
     for font in [ClockFont::Mono, ClockFont::Proportional, ClockFont::Serif] {
         for tall in [16, 20] {
-            for (k, style) in styles.into_iter().enumerate() {
+            for (k, style) in STYLES.into_iter().enumerate() {
                 let mut show = wide(font, k % 2 == 1, "hh:mm:ss.t a", 317.3);
                 (show.panel, show.restyle, show.noise) = ([30, 30, 350, tall], style, 12.0);
                 let tally = read_as("hh:mm:ss.t", &show, given(&show), 30, 0..0);
@@ -323,11 +325,6 @@ fn frames_icons_and_lines_beside_a_clock_are_no_digits() {
 
 #[test]
 fn am_and_pm_are_read_over_noon_and_midnight() {
-    let styles: [fn(&str) -> String; 3] = [
-        str::to_owned,
-        |text| text.replace("AM", "am").replace("PM", "pm"),
-        |text| text.replace("AM", "A.M.").replace("PM", "P.M."),
-    ];
     for (k, font) in ClockFont::ALL.into_iter().enumerate() {
         for (n, (format, offset_s)) in
             [("hh:mm:ss a", 43_198.517), ("hh:mm:ss.t a", 86_398.517), ("a hh:mm:ss", 46_798.517)]
@@ -336,7 +333,7 @@ fn am_and_pm_are_read_over_noon_and_midnight() {
         {
             let mut show = wide(font, (k + n) % 2 == 0, format, offset_s);
             show.panel = [80, 30, 300, 34];
-            show.restyle = styles[(k + n) % 3];
+            show.restyle = STYLES[(k + n) % 3];
             let tally = read(&show, given(&show), 90, 0..0);
             // Printed half as high as segments, small letters and letters with dots are a few pixels high.
             let least = if font == ClockFont::Segments && n > 0 { 0 } else { 75 };

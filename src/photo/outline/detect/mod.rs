@@ -396,12 +396,7 @@ fn refined(image: &DynamicImage, rough: &Outline, axis: Axis, options: &DetectOp
 
     let nail = Frame { origin: [0, 1].map(|k| centre[k] - low[k]), up, unit_px: length };
     let template = OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: width / length, turn: 0.0, taper: TAPER };
-    let patch = Patch::cut(&levels, nail, search::NAIL);
-    let first = evidence::score(&patch, &template, false);
-    let (shape, score) = search::polish(&patch, (template, first), false);
-    let (nail, template) = own_frame(nail, &shape);
-    let lead = Lead { nail, template, origin: Origin::Anywhere, score };
-    let found = follow_all(&levels, vec![lead], 1).pop()?;
+    let found = follow_all(&levels, vec![lead_anywhere(&levels, nail, template)], 1).pop()?;
     let moved: Vec<[f64; 2]> = found.outline.points().iter().map(|p| [p[0] + low[0], p[1] + low[1]]).collect();
     Some(Detected { outline: Outline::new(&moved).ok()?, axis: found.axis, confidence: found.confidence() })
 }
@@ -438,6 +433,15 @@ pub fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
         .collect()
 }
 
+/// A template that no finger end led to, polished.
+fn lead_anywhere(levels: &Levels, nail: Frame, template: OutlineShape) -> Lead {
+    let patch = Patch::cut(levels, nail, search::NAIL);
+    let first = evidence::score(&patch, &template, false);
+    let (shape, score) = search::polish(&patch, (template, first), false);
+    let (nail, template) = own_frame(nail, &shape);
+    Lead { nail, template, origin: Origin::Anywhere, score }
+}
+
 /// Every template worth refining.
 #[doc(hidden)]
 pub fn leads(levels: &Levels) -> Vec<Lead> {
@@ -454,11 +458,7 @@ pub fn leads(levels: &Levels) -> Vec<Lead> {
     let (patch, places) = search::anywhere(levels, PLACES);
     for (shape, _) in places.into_iter().filter(|s| s.1 > HOPE) {
         let (nail, template) = own_frame(patch.frame, &shape);
-        let patch = Patch::cut(levels, nail, search::NAIL);
-        let first = evidence::score(&patch, &template, false);
-        let (shape, score) = search::polish(&patch, (template, first), false);
-        let (nail, template) = own_frame(nail, &shape);
-        leads.push(Lead { nail, template, origin: Origin::Anywhere, score });
+        leads.push(lead_anywhere(levels, nail, template));
     }
     leads
 }

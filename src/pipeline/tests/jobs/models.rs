@@ -2,7 +2,6 @@
 //! and inputs.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -11,6 +10,7 @@ use super::{keys, kinds, step};
 use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, Maker, OptionFault, Prepared, Work};
 use crate::phantom::force::{ForceTrajectory, Spiral};
 use crate::phantom::log::{LogOptions, LogScene, write};
+use crate::predictor::tests::recording;
 
 /// A folder of recordings and results.
 struct Place {
@@ -48,16 +48,7 @@ impl Place {
 
     /// Forces and an angle seen by three photodiodes.
     fn table(&self, name: &str, phase: f64) {
-        let mut text = "time_s,P1,P2,P3,Fx_N,Fy_N,Fz_N,J2_deg\n".to_owned();
-        for k in 0..120 {
-            let t = f64::from(k) * 0.04;
-            let [a, b, c] = [3.1, 5.3, 7.7].map(|rate| (rate * t + phase).sin());
-            let noise = [0.01, 0.02].map(|size| size * (97.0 * t + phase).sin());
-            let volts = [2.0 + a + noise[0], 2.0 + b - c, 2.0 + c + noise[1]];
-            writeln!(text, "{t},{:?},{:?},{:?},{a},{b},{},{}", volts[0], volts[1], volts[2], -1.0 - c, 20.0 * b)
-                .unwrap();
-        }
-        std::fs::write(self.path(name), text).unwrap();
+        std::fs::write(self.path(name), recording(120, phase, 1.0, true)).unwrap();
     }
 
     /// A raw log with forces, its LED on and off.

@@ -124,16 +124,7 @@ fn turned_and_stretched_pictures_show_the_same_finger() {
 #[test]
 fn the_lens_is_taken_out() {
     let mut layout = shared();
-    let distortion = [-0.3, 0.1, 0.001, -0.002, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let camera = crate::posture::Camera {
-        size_px: None,
-        fx_px: 1000.0,
-        fy_px: None,
-        cx_px: None,
-        cy_px: None,
-        distortion,
-        plane: None,
-    };
+    let camera = crate::posture::Camera::of(1000.0, &[-0.3, 0.1, 0.001, -0.002]);
     let lens = crate::posture::Lens::new(&camera, (WIDTH, HEIGHT), 1.0);
     layout.camera = Some(camera);
     let expected = [20.0, 75.0, 30.0];
@@ -146,17 +137,7 @@ fn the_lens_is_taken_out() {
 #[test]
 fn a_marker_beyond_the_lens_is_lost() {
     let mut layout = shared();
-    let mut distortion = [0.0; 12];
-    distortion[0] = -0.5;
-    layout.camera = Some(crate::posture::Camera {
-        size_px: None,
-        fx_px: 300.0,
-        fy_px: None,
-        cx_px: None,
-        cy_px: None,
-        distortion,
-        plane: None,
-    });
+    layout.camera = Some(crate::posture::Camera::of(300.0, &[-0.5]));
     let mut points = finger(0.0, [10.0, 10.0, 10.0]);
     points[0] = [1.0, 1.0];
     let row = angles_of(&layout, UPRIGHT).step(&seen(&points));

@@ -9,7 +9,7 @@ use std::path::Path;
 pub use line::CouplingLine;
 use line::Pairs;
 
-use crate::figure::{Axis, Chart, Item, Thinned, draw_charts};
+use crate::figure::{Chart, Item, Thinned, draw_charts};
 use crate::posture::{Angle, Layout};
 
 /// Gathers what the pictures show.
@@ -82,24 +82,15 @@ impl AngleFigures {
             angles.push(Item::Line { name: Some(name.clone()), runs: curve, colour: joint, width: 1 });
             errors.push(Item::Line { name: None, runs: self.rows.largest_sd(joint), colour: joint, width: 1 });
         }
-        let axis = |label: &str| Axis { label: label.to_owned() };
         let charts = [
-            Chart {
-                title: "Joint angles over time (bands: plus or minus one standard error)".to_owned(),
-                x: axis(""),
-                y: axis("angle, degrees of flexion"),
-                from_zero: false,
-                items: angles,
-                height: 560,
-            },
-            Chart {
-                title: String::new(),
-                x: axis("time, s"),
-                y: axis("standard error, degrees"),
-                from_zero: true,
-                items: errors,
-                height: 280,
-            },
+            Chart::new(
+                "Joint angles over time (bands: plus or minus one standard error)",
+                "",
+                "angle, degrees of flexion",
+                angles,
+                560,
+            ),
+            Chart::new("", "time, s", "standard error, degrees", errors, 280).from_zero(),
         ];
         draw_charts(&charts, WIDTH, png, svg)
     }
@@ -129,14 +120,13 @@ impl AngleFigures {
             let run = ends.map(|x| [x, line.intercept_deg + line.slope * x]).to_vec();
             items.push(Item::Line { name: Some(name), runs: vec![run], colour: 1, width: 2 });
         }
-        let chart = Chart {
-            title: format!("{y} against {x}"),
-            x: Axis { label: format!("{x}, degrees of flexion") },
-            y: Axis { label: format!("{y}, degrees of flexion") },
-            from_zero: false,
+        let chart = Chart::new(
+            format!("{y} against {x}"),
+            format!("{x}, degrees of flexion"),
+            format!("{y}, degrees of flexion"),
             items,
-            height: 620,
-        };
+            620,
+        );
         draw_charts(&[chart], 820, png, svg)?;
         Ok(true)
     }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::figure::drawn::Drawn;
 
 /// J1, J2, J3 in the file's order J3, J1, J2.
 fn layout() -> Layout {
@@ -26,23 +27,12 @@ fn bending(rows: usize) -> AngleFigures {
     figures
 }
 
-struct Drawn {
-    _dir: tempfile::TempDir,
-    picture: image::RgbImage,
-    svg: String,
-}
-
-/// Draws one of both pictures; kept under `LUNULA_LOOK` when that is set.
+/// Draws one of both pictures.
 fn drawn(figures: &AngleFigures, name: &str, coupling: bool) -> Drawn {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = std::env::var_os("LUNULA_LOOK").map_or_else(|| dir.path().to_owned(), Into::into);
-    let (png, svg) = (folder.join(format!("{name}.png")), folder.join(format!("{name}.svg")));
-    if coupling {
-        assert!(figures.draw_coupling(&png, &svg).unwrap());
-    } else {
-        figures.draw_angles(&png, &svg).unwrap();
-    }
-    Drawn { picture: image::open(&png).unwrap().to_rgb8(), svg: std::fs::read_to_string(svg).unwrap(), _dir: dir }
+    crate::figure::drawn::drawn(name, |png, svg| match coupling {
+        true => assert!(figures.draw_coupling(png, svg).unwrap()),
+        false => figures.draw_angles(png, svg).unwrap(),
+    })
 }
 
 #[test]

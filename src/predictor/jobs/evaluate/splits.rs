@@ -45,7 +45,7 @@ pub(super) fn splits(
         let own = own.clone();
         Ok(Box::new(move |test| predict(&fitted.model, predictor.cone(), test.only_inputs(&own).x().view())))
     };
-    let mut methods = vec![Method { name: name(recipe.kind), fit: Box::new(fit) }];
+    let mut methods = vec![Method { name: recipe.kind.to_string(), fit: Box::new(fit) }];
     if !photodiodes.is_empty() {
         methods.push(linear(&photodiodes, &seen));
     }
@@ -67,15 +67,6 @@ pub(super) fn splits(
     };
     notes.extend(seen.targets().iter().filter_map(of));
     Ok(Splits { ways, leaks })
-}
-
-fn name(kind: Kind) -> String {
-    match kind {
-        Kind::Linear => "linear".to_owned(),
-        Kind::Quadratic => "quadratic".to_owned(),
-        Kind::Network { hidden } => format!("network of {hidden}"),
-        Kind::Eigennails { .. } => "eigennails".to_owned(),
-    }
 }
 
 /// A linear model of photodiodes; rows that lack one are not known to it.

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
 use super::Config;
+use crate::words::instead;
 
 /// Faults that are named of one file (assumed: who corrects so many looks again).
 const MOST: usize = 100;
@@ -61,12 +62,13 @@ impl Config {
             let what = format!("not TOML: {}; correct this line", why.message());
             ConfigFaults(vec![ConfigFault { key: None, line, what }])
         })?;
-        let known = keys();
+        let keys = keys();
+        let known: Vec<&str> = keys.iter().map(String::as_str).collect();
         let mut faults = Vec::new();
         let mut config = Self::default();
         for (name, value) in table.get_ref() {
             let (key, line) = (name.get_ref().as_ref(), Some(line_of(text, name.span().start)));
-            let what = if known.iter().any(|known| known == key) {
+            let what = if known.contains(&key) {
                 set(&mut config, key, value.get_ref())
             } else {
                 Err(format!("unknown key `{}`; {}", key.escape_debug(), instead(key, &known)))
@@ -130,14 +132,4 @@ fn set(config: &mut Config, key: &str, value: &DeValue<'_>) -> Result<(), String
 /// The line of a place (a number of bytes) of a text, from 1.
 fn line_of(text: &str, at: usize) -> usize {
     1 + text.as_bytes().iter().take(at).filter(|&&byte| byte == b'\n').count()
-}
-
-/// What to write instead of an unknown key: the nearest, which differs by a letter in three at most, or the choice.
-fn instead(key: &str, known: &[String]) -> String {
-    let most = 1.max(key.chars().count() / 3);
-    let nearest = known.iter().map(|known| (strsim::osa_distance(&key.to_lowercase(), known), known)).min();
-    match nearest.filter(|(distance, _)| *distance <= most) {
-        Some((_, known)) => format!("did you mean `{known}`?"),
-        None => format!("known: {}", known.join(", ")),
-    }
 }

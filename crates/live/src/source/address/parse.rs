@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use super::{Address, BAUD, Form, LslQuery, Pace, Place};
 use crate::source::fault::SourceFault;
+use crate::words::instead;
 
 /// What an address may begin with.
 const KINDS: [&str; 6] = ["serial", "tcp", "tcp-listen", "udp", "lsl", "phantom"];
@@ -170,16 +171,6 @@ impl Keys {
         };
         let known = [own, &["form", "volts-per-count"]].concat();
         Err(format!("there is no `{key}` here; {}", instead(key, &known)))
-    }
-}
-
-/// What to write instead of an unknown word: the nearest, or the choice.
-fn instead(word: &str, known: &[&str]) -> String {
-    let slips = 1.max(word.chars().count() / 3);
-    let nearest = known.iter().map(|known| (strsim::osa_distance(&word.to_lowercase(), known), *known)).min();
-    match nearest.filter(|(distance, _)| *distance <= slips) {
-        Some((_, known)) => format!("did you mean `{known}`?"),
-        None => format!("known: {}", known.join(", ")),
     }
 }
 

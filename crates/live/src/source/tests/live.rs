@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::net::{TcpListener, TcpStream, UdpSocket};
 use std::os::unix::fs::symlink;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rustix::fd::OwnedFd;
@@ -114,6 +114,21 @@ fn device(path: &Path) -> OwnedFd {
     device
 }
 
+/// A folder, a port in it, and its other end.
+fn port() -> (tempfile::TempDir, PathBuf, OwnedFd) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("port");
+    let plugged = device(&path);
+    (folder, path, plugged)
+}
+
+/// A stream over TCP, and its other end.
+fn connected(clock: &HostClock) -> (Stream, TcpStream) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let stream = open(&format!("tcp:{}", listener.local_addr().unwrap()), clock).unwrap();
+    (stream, listener.accept().unwrap().0)
+}
+
 fn send(device: &OwnedFd, mut bytes: &[u8]) {
     while !bytes.is_empty() {
         bytes = &bytes[rustix::io::write(device, bytes).unwrap()..];
@@ -122,9 +137,7 @@ fn send(device: &OwnedFd, mut bytes: &[u8]) {
 
 #[test]
 fn a_serial_port_is_unplugged_and_plugged_in_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("port");
-    let plugged = device(&path);
+    let (_folder, path, plugged) = port();
     let clock = HostClock::start();
     let address = format!("serial:{}?baud=921600", path.display());
     let mut stream = open(&address, &clock).unwrap();
@@ -155,9 +168,7 @@ fn a_serial_port_is_unplugged_and_plugged_in_again() {
 
 #[test]
 fn half_a_row_that_we_come_into_is_no_row() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("port");
-    let plugged = device(&path);
+    let (_folder, path, plugged) = port();
     let clock = HostClock::start();
     let address: Address = format!("serial:{}", path.display()).parse().unwrap();
     let columns = Some(["time_us", "P1"].map(str::to_owned).into());
@@ -171,9 +182,7 @@ fn half_a_row_that_we_come_into_is_no_row() {
 
 #[test]
 fn frames_come_over_a_serial_port() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("port");
-    let plugged = device(&path);
+    let (_folder, path, plugged) = port();
     let clock = HostClock::start();
     let mut stream = open(&format!("serial:{}?form=frames&volts-per-count=0.001", path.display()), &clock).unwrap();
     let mut log = Log::default();
@@ -196,9 +205,7 @@ fn frames_come_over_a_serial_port() {
 
 #[test]
 fn a_port_that_is_too_slow_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("port");
-    let plugged = device(&path);
+    let (_folder, path, plugged) = port();
     let clock = HostClock::start();
     let mut stream = open(&format!("serial:{}", path.display()), &clock).unwrap();
     let mut log = Log::default();
@@ -217,9 +224,7 @@ fn a_port_that_is_too_slow_is_named() {
 
 #[test]
 fn another_baud_rate_is_recognized() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("port");
-    let plugged = device(&path);
+    let (_folder, path, plugged) = port();
     let clock = HostClock::start();
     let mut stream = open(&format!("serial:{}", path.display()), &clock).unwrap();
     let noise: Vec<u8> = (0..3000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8 | 0x80).collect();
@@ -231,10 +236,8 @@ fn another_baud_rate_is_recognized() {
 
 #[test]
 fn rows_that_an_xor_misses_do_not_move_the_clock() {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let clock = HostClock::start();
-    let mut stream = open(&format!("tcp:{}", listener.local_addr().unwrap()), &clock).unwrap();
-    let (mut peer, _) = listener.accept().unwrap();
+    let (mut stream, mut peer) = connected(&clock);
     writeln!(peer, "time_us,n,P1").unwrap();
     for n in 110_000..110_300 {
         let body = format!("{},{n},{}", n * 1000, n % 7);
@@ -261,10 +264,8 @@ fn ports_that_are_not_there_are_named() {
 
 #[test]
 fn a_live_row_allocates_nothing() {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let clock = HostClock::start();
-    let mut stream = open(&format!("tcp:{}", listener.local_addr().unwrap()), &clock).unwrap();
-    let (mut peer, _) = listener.accept().unwrap();
+    let (mut stream, mut peer) = connected(&clock);
     let mut count = 0_u64;
     let mut cycle = |peer: &mut TcpStream, text: &[u8], rows: u64| {
         peer.write_all(text).unwrap();

@@ -1,6 +1,6 @@
 //! Cells of a line, and the numbers in them.
 
-use crate::wire::cell::{is_missing, plain, with_decimal_comma};
+use crate::wire::cell::{bare, is_missing, plain, with_decimal_comma};
 
 /// What is between cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,14 +83,6 @@ impl<'a> Iterator for Cells<'a> {
     }
 }
 
-fn bare(cell: &[u8]) -> &[u8] {
-    let cell = cell.trim_ascii();
-    match cell {
-        [b'"', inside @ .., b'"'] => inside.trim_ascii(),
-        _ => cell,
-    }
-}
-
 /// The cells of a line as names.
 pub(super) fn names_of(line: &[u8], separator: Separator) -> Vec<String> {
     Cells::new(line, separator).map(|cell| String::from_utf8_lossy(cell).replace("\"\"", "\"")).collect()
@@ -104,13 +96,6 @@ pub(super) fn is_other_order(names: &[String], before: &[String]) -> bool {
         sorted
     };
     names != before && names.len() == before.len() && sorted(names) == sorted(before)
-}
-
-/// Whether a cell may be a name: it does not look like a number, nor like something cut off from one.
-pub(super) fn is_name(cell: &str) -> bool {
-    !cell.is_empty()
-        && cell.replace(',', ".").parse::<f64>().is_err()
-        && !cell.starts_with(|c: char| c.is_ascii_digit())
 }
 
 /// Reads cells as numbers, to the same bits as logs are read: a decimal point or, where commas separate no cells, a

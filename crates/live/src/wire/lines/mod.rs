@@ -10,12 +10,12 @@ mod opening;
 #[cfg(test)]
 mod tests;
 
-use crate::wire::cell::led;
+use crate::wire::cell::{is_name, led};
 use crate::wire::checksum::{Checksum, Unsealed, unseal};
 use crate::wire::fault::WireFault;
 use crate::wire::row::{Decoded, Naming, Sample, Step, Use};
 use crate::wire::spoilt::{Spoil, shown};
-use cells::{Cells, Numbers, Separator, count, is_name, is_other_order, names_of};
+use cells::{Cells, Numbers, Separator, count, is_other_order, names_of};
 use opening::Opening;
 
 /// The longest line, bytes: more than any logger writes, little enough to hold.

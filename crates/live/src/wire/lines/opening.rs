@@ -5,8 +5,9 @@
 //! something to the caller, is it. One whose names mean nothing is one all the same where numbers follow in as many
 //! cells.
 
+use crate::wire::cell::is_name;
 use crate::wire::fault::WireFault;
-use crate::wire::lines::cells::{Cells, Separator, is_name, is_other_order, names_of};
+use crate::wire::lines::cells::{Cells, Separator, is_other_order, names_of};
 use crate::wire::row::{Meaning, Naming};
 use crate::wire::spoilt::shown;
 
