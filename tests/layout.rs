@@ -90,6 +90,7 @@ fn photodiodes_of_a_log_are_laid_out_as_they_are() {
     answer
         .expect(0)
         .says("note: --grid is of no use here: the candidates are photodiodes")
+        .says("have the same readings and targets, row by row, and count as 2 persons")
         .says("warning: anna.csv, copy.csv: the same to the byte, and counted 2 times")
         .says("warning: up.csv: Fz_N goes from");
 }

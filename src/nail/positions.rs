@@ -26,6 +26,8 @@ use thiserror::Error;
 
 /// More photodiodes than fit on a nail (assumed).
 const MOST: usize = 64;
+/// So many in one quarter are hardly meant (assumed).
+const QUARTER: usize = 4;
 /// Widths of a nail, millimetres: a baby's to more than a large thumb's (assumed).
 const NAIL_WIDTH_MM: std::ops::RangeInclusive<f64> = 3.0..=30.0;
 
@@ -121,6 +123,23 @@ impl Positions {
         places.into_iter().map(|(_, names)| names).filter(|names| names.len() > 1).collect()
     }
 
+    /// What to say of several photodiodes in one quarter of the nail: places as a picture's are counted, from a corner.
+    #[must_use]
+    pub fn in_one_quarter(&self) -> Option<String> {
+        let one_side = |of: fn(&Position) -> f64| {
+            let mut sides = self.photodiodes.iter().map(of);
+            let first = sides.next().unwrap_or(0.0);
+            sides.all(|place| place * first >= 0.0)
+        };
+        (self.photodiodes.len() >= QUARTER && one_side(|one| one.u) && one_side(|one| one.v)).then(|| {
+            format!(
+                "all {} photodiodes lie in one quarter of the nail: u and v go from -1 to 1 from its middle, to the \
+                 right and towards the tip; are these shares of the whole nail, from a corner?",
+                self.photodiodes.len()
+            )
+        })
+    }
+
     fn checked(self) -> Result<Self, PositionsFault> {
         let fault = |text: String| Err(PositionsFault(text));
         if !NAIL_WIDTH_MM.contains(&self.nail_width_mm) {
@@ -181,6 +200,17 @@ mod tests {
         assert!(fault.starts_with("outside of the nail: P3 at u = 1.2, v = 0; P5 at u = 0, v = -3;"), "{fault}");
         let nan = Positions::from_toml(&text.replace("1.2", "nan")).unwrap_err().to_string();
         assert!(nan.contains("outside"), "{nan}");
+    }
+
+    #[test]
+    fn places_counted_from_a_corner_are_doubted() {
+        let thesis = Positions::thesis();
+        assert_eq!(thesis.in_one_quarter(), None);
+        let mut shares = thesis.clone();
+        shares.photodiodes.iter_mut().for_each(|one| (one.u, one.v) = (0.5 + 0.5 * one.u, 0.5 + 0.5 * one.v));
+        assert!(shares.in_one_quarter().is_some_and(|said| said.contains("all 8 photodiodes lie in one quarter")));
+        shares.photodiodes.truncate(3);
+        assert_eq!(shares.in_one_quarter(), None);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! counts where no reading and no target is missing.
 
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 use lunula_predictor::{Criterion, LayoutFault, LayoutProblem, Moments};
 use ndarray::{Array2, Axis};
@@ -74,10 +75,12 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
         return Err(LayoutError::input(path, "has no row below the names of the columns"));
     }
     let (kept, left_out) = choose(&all, &people, options)?;
+    let twice = same_rows(&people);
     LayoutProblem::fits(kept.len(), people.len())?;
     let places: Vec<Place> = kept.iter().map(|&k| all[k].clone()).collect();
     let files = inputs.data.iter().map(|input| (input.path.display().to_string(), input.path.as_path()));
-    let warnings = copies(files).into_iter().chain(sources.into_iter().flat_map(|source| source.warnings)).collect();
+    let warnings = copies(files).into_iter().chain(twice);
+    let warnings = warnings.chain(sources.into_iter().flat_map(|source| source.warnings)).collect();
     let mut given = Given {
         criterion: Criterion::Error,
         places,
@@ -271,6 +274,31 @@ fn people(sources: &[Source], own: &[&str], targets: &[String]) -> BTreeMap<Stri
         }
     }
     people
+}
+
+/// What to say of persons who have the same readings and targets: one recording under several names, by which the
+/// interval over persons is too narrow.
+fn same_rows(people: &BTreeMap<String, Rows>) -> Vec<String> {
+    let mut by_rows: BTreeMap<u64, Vec<&str>> = BTreeMap::new();
+    for (person, rows) in people {
+        let mut hasher = DefaultHasher::new();
+        rows.x.iter().chain(&rows.y).for_each(|value| value.to_bits().hash(&mut hasher));
+        by_rows.entry(hasher.finish()).or_default().push(person);
+    }
+    let mut said: Vec<String> = by_rows
+        .into_values()
+        .filter(|persons| persons.len() > 1)
+        .map(|persons| {
+            format!(
+                "{} have the same readings and targets, row by row, and count as {} persons: is this one recording \
+                 under several names? The interval over persons is too narrow then",
+                persons.join(", "),
+                persons.len()
+            )
+        })
+        .collect();
+    said.sort();
+    said
 }
 
 /// The candidates that stay, and how many do not.

@@ -240,6 +240,24 @@ fn a_press_in_a_trace_of_two_has_its_length() {
     assert!((rows[1].depth().unwrap() + 15.0).abs() <= 0.5);
 }
 
+#[test]
+fn a_video_that_begins_while_the_finger_presses_is_doubted() {
+    let (time_s, values) = trace(15.0, [0.2, 0.3], 8.0, 0.0, 14.0, 5);
+    let said = |proximal: f64, distal: f64| {
+        let end = |name: &str, part: f64| {
+            let values: Vec<f64> = values.iter().map(|value| part * value).collect();
+            Trace { name: name.to_owned(), red: vec![0.0; values.len()], values }
+        };
+        let (ends, still) = ([end("distal", distal), end("proximal", proximal)], vec![0.0; values.len()]);
+        let traces = [end("P3", proximal)];
+        reversed(&rows(&Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &still, whole: 100.0 }))
+    };
+    assert_eq!(said(-1.0, 0.6), None);
+    assert!(said(1.0, -0.6).is_some_and(|said| said.starts_with("1 of 1 presses look like releases")));
+    // Both ends up is another thing.
+    assert_eq!(said(1.0, 0.6), None);
+}
+
 mod real_data {
     use super::*;
     use crate::real_data::real_data;

@@ -15,7 +15,7 @@ use super::draw::{Thumbnails, draw};
 use super::plan::{light_of, steps};
 use super::report::{FrameCounts, MapFigures, NailFigures, NailVideoFigures, NailVideoReport, PhotodiodeFigures};
 use super::results::{CellTable, Kept, MotionTable, Reading, photodiodes, presses};
-use super::traces::{ends, middle, traces};
+use super::traces::{ends, middle, repeated, traces};
 use crate::figure::{encode_png, png};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -25,7 +25,7 @@ use crate::nailvideo::first::{Finder, FirstNail, NotOne, labelme, upright};
 use crate::nailvideo::follow::{Follower, Lost, beyond_fine};
 use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
-use crate::nailvideo::press::{Recording, USE, noise_sd, rows};
+use crate::nailvideo::press::{Recording, USE, noise_sd, reversed, rows};
 use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells, discs};
 use crate::photo::outline::{Source, ToDraw};
 use crate::photograph::Photograph;
@@ -401,6 +401,8 @@ impl Job<'_> {
         if self.info.grey && self.options.light.is_none() {
             report.warnings.push("the video is grey: light is not taken off (--light none)".to_owned());
         }
+        report.warnings.extend(repeated(&traces, &noise, |row| kept[row].index));
+        report.warnings.extend(reversed(&pressed));
         if noise.iter().all(Option::is_none) {
             report.warnings.push("too few frames to know the photodiodes' noise: no standard errors".to_owned());
         }
@@ -424,6 +426,7 @@ impl Job<'_> {
                 self.info.codec
             )),
         }
+        report.warnings.extend(positions.in_one_quarter());
         for names in positions.at_one_place() {
             report.warnings.push(format!("{} lie at one place: they repeat one measurement", names.join(", ")));
         }
