@@ -38,9 +38,10 @@ pub(super) fn ends(positions: &Positions, traces: &[Trace]) -> Vec<Trace> {
     [end("distal", &|v| v > 0.0), end("proximal", &|v| v < 0.0)].into_iter().flatten().collect()
 }
 
-/// Readings that differ by less than this share of their noise are of one picture: of 240 frames of a camera's none to
-/// one are.
+/// Readings that all differ by less than this share of their noise are of one picture: of 240 frames of phantoms none
+/// or one are by chance; of fewer photodiodes than this more would be.
 const SAME: f64 = 0.05;
+const COMPARED: usize = 3;
 /// So many of those, and a change of so many times the noise behind one, are no chance.
 const REPEATED: usize = 4;
 const JUMP: f64 = 5.0;
@@ -55,7 +56,8 @@ pub(super) fn repeated(traces: &[Trace], noise: &[Option<f64>], index: impl Fn(u
             let change = (trace.values[frame] - trace.values[frame - 1]).abs() / (*noise)?;
             change.is_finite().then_some(change)
         };
-        traces.iter().zip(noise).filter_map(of).reduce(f64::max)
+        let all: Vec<f64> = traces.iter().zip(noise).filter_map(of).collect();
+        (all.len() >= COMPARED).then(|| all.into_iter().fold(0.0, f64::max))
     };
     let changes: Vec<Option<f64>> = (1..frames).map(change).collect();
     let is_same = |change: &Option<f64>| change.is_some_and(|change| change < SAME);
@@ -82,7 +84,7 @@ pub(super) fn middle(all: impl Iterator<Item = f64>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// What is said of two photodiodes at 30 frames a second; frame k shows the picture `shown(k)`.
+    /// What is said of three photodiodes at 30 frames a second; frame k shows the picture `shown(k)`.
     fn said(shown: impl Fn(usize) -> usize) -> Option<String> {
         let noise = |k: usize| 0.1 * ((((k * 7919 + 31) * (k + 17)) % 2003) as f64 / 1001.0 - 1.0);
         let press = |k: usize| 20.0 * (1.0 - (-(k.saturating_sub(60) as f64) / 6.0).exp());
@@ -92,8 +94,13 @@ mod tests {
             values: (0..150).map(|frame| of(shown(frame)) + 1e-3 * (frame % 3) as f64).collect(),
             red: Vec::new(),
         };
-        let traces = [trace("P1", &|k| press(k) + noise(k)), trace("P2", &|k| noise(2 * k + 1) - 0.5 * press(k))];
-        repeated(&traces, &[Some(0.06); 2], |row| row as u64)
+        let traces = [
+            trace("P1", &|k| press(k) + noise(k)),
+            trace("P2", &|k| noise(2 * k + 1) - 0.5 * press(k)),
+            trace("P3", &|k| noise(3 * k + 2)),
+        ];
+        assert_eq!(repeated(&traces[..2], &[Some(0.06); 2], |row| row as u64), None, "two may agree by chance");
+        repeated(&traces, &[Some(0.06); 3], |row| row as u64)
     }
 
     #[test]
