@@ -173,6 +173,12 @@ fn ten_bits(picture: &Picture) -> Picture {
     Picture { format: Format { depth: 10, ..picture.format }, planes: picture.planes.iter().map(deep).collect() }
 }
 
+/// Chroma of blue for that of red.
+fn exchanged(picture: &Picture) -> Picture {
+    let [luma, blue, red] = [0, 1, 2].map(|k| picture.planes[k].clone());
+    Picture { format: picture.format, planes: vec![luma, red, blue] }
+}
+
 pub(crate) fn grey(picture: &Picture) -> Picture {
     Picture { format: Format { subsampling: None, ..picture.format }, planes: vec![picture.planes[0].clone()] }
 }
@@ -203,6 +209,7 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     write(&dir.path("turned.mp4"), Turn::Quarter, of(turned_back));
     write(&dir.path("deep.mp4"), Turn::None, of(ten_bits));
     write(&dir.path("grey.mp4"), Turn::None, of(grey));
+    write(&dir.path("bgr.mp4"), Turn::None, of(exchanged));
     let some = (0..all.len()).filter(kept).map(|k| (all[k].clone(), uneven(k)));
     write(&dir.path("uneven.mp4"), Turn::None, some);
     let follow = |name: &str, light: &str| {
@@ -234,7 +241,7 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
         assert!((time_s - 1e-3 * uneven(k) as f64).abs() < 1e-6, "{time_s}");
     }
     let (of_grey, answer) = follow("grey", "");
-    answer.says("light is not taken off");
+    let answer = answer.says("light is not taken off");
     // Luma rises with green.
     let (green, _) = follow("plain", "--light none");
     let traces = [&green, &of_grey].map(|rows| rows.iter().map(|row| number(&row["P2"]).unwrap()).collect::<Vec<_>>());
@@ -243,5 +250,10 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     let [full, luma] = [range(&traces[0]), range(&traces[1])];
     println!("P2 over the press: green {full}, luma {luma}");
     assert!(luma > 0.4 * full && luma < full, "{luma} {full}");
+    let bluer = "nail and skin are bluer than red on frame 0";
+    follow("bgr", "").1.says(bluer);
+    for other in [&answer, &follow("plain", "").1] {
+        assert!(!other.stderr.contains(bluer), "{}", other.stderr);
+    }
     dir.words("nailvideo grey.mp4 --outline s/outline.json --light red --out x").expect(2).says("only --light none");
 }

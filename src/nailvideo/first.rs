@@ -12,7 +12,7 @@ use super::sample::{Colours, Planes};
 use crate::labelme::LabelMe;
 use crate::nail::Outline;
 use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file};
-use crate::photo::{NailFrame, Photograph};
+use crate::photo::{NailFrame, Photograph, is_bluer};
 use crate::photograph::{PICTURES, is_picture};
 use crate::video::{Frame, Info};
 
@@ -30,6 +30,8 @@ pub(in crate::nailvideo) struct FirstNail {
     pub(in crate::nailvideo) frame: NailFrame,
     pub(in crate::nailvideo) source: Source,
     pub(in crate::nailvideo) confidence: Option<f64>,
+    /// Whether it and the skin below it are bluer than red.
+    pub(in crate::nailvideo) is_bluer: bool,
 }
 
 impl FirstNail {
@@ -138,7 +140,9 @@ impl Finder {
             }
         };
         let seen = to_draw(&listed.nails);
-        one_of(listed.nails, [picture.image.width(), picture.image.height()]).map_err(|why| NotOne { why, seen })
+        let found = one_of(listed.nails, [picture.image.width(), picture.image.height()]);
+        let found = found.map(|nail| FirstNail { is_bluer: is_bluer(&picture.image, &nail.frame), ..nail });
+        found.map_err(|why| NotOne { why, seen })
     }
 }
 
@@ -167,7 +171,7 @@ fn one_of(nails: Vec<Nail>, size: [u32; 2]) -> Result<FirstNail, String> {
     if let Some(doubt) = frame.doubt(&outline, size) {
         return Err(format!("of the nail: {doubt}"));
     }
-    Ok(FirstNail { outline, frame, source, confidence })
+    Ok(FirstNail { outline, frame, source, confidence, is_bluer: false })
 }
 
 fn narrow(nail: &str, width_px: f64) -> String {

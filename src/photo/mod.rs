@@ -17,6 +17,7 @@ mod run;
 mod set;
 mod sums;
 
+pub(crate) use crate::photo::run::doubts::is_bluer;
 pub use crate::photo::run::job::run;
 pub use crate::photo::run::kind::MapsJob;
 pub use crate::photo::run::plan::plan;

@@ -426,6 +426,13 @@ impl Job<'_> {
                 self.info.codec
             )),
         }
+        if nail.is_bluer {
+            report.warnings.push(format!(
+                "nail and skin are bluer than red on frame {}: were red and blue exchanged, as by a program that saves \
+                 OpenCV's BGR? Light is taken off by red",
+                report.frames.first
+            ));
+        }
         report.warnings.extend(positions.in_one_quarter());
         for names in positions.at_one_place() {
             report.warnings.push(format!("{} lie at one place: they repeat one measurement", names.join(", ")));

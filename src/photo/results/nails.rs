@@ -36,8 +36,8 @@ pub struct NailRow {
     pub at_full_scale: f64,
     /// Of its normalized picture, where there is one.
     pub(in crate::photo) survey: Option<Survey>,
-    /// How much redder than blue it or the skin around it is, the larger of the two, of full scale; of grey ones none.
-    pub(in crate::photo) red_less_blue: Option<f64>,
+    /// Whether it and the skin below it are bluer than red.
+    pub(in crate::photo) is_bluer: bool,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
 }
@@ -55,7 +55,7 @@ impl NailRow {
             normalized: None,
             at_full_scale: 0.0,
             survey: None,
-            red_less_blue: None,
+            is_bluer: false,
             reason: String::new(),
         }
     }

@@ -34,8 +34,8 @@ const NAMES: usize = 3;
 /// hands: by 0.02 in one, 0.11 or more in all others).
 const BLUER: f64 = -0.02;
 
-/// How much redder than blue a nail and the skin beside and below it are, the larger of the two; nothing of grey.
-pub(super) fn red_less_blue(image: &DynamicImage, frame: &NailFrame) -> Option<f64> {
+/// Whether both a nail and the skin below it are bluer than red, as none are.
+pub(crate) fn is_bluer(image: &DynamicImage, frame: &NailFrame) -> bool {
     let at = |[across, along]: &[f64; 2]| {
         let [x, y] = frame.photo_from_nail(*across, *along).map(|v| v.round());
         let within = x >= 0.0 && y >= 0.0 && x < f64::from(image.width()) && y < f64::from(image.height());
@@ -49,12 +49,12 @@ pub(super) fn red_less_blue(image: &DynamicImage, frame: &NailFrame) -> Option<f
         let known: Vec<f64> = points.iter().filter_map(at).collect();
         (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
     };
-    image.color().has_color().then(|| Some(mean(&nail)?.max(mean(&skin)?)))?
+    image.color().has_color() && [nail, skin].iter().all(|points| mean(points).is_some_and(|less| less < BLUER))
 }
 
 /// Photographs whose red and blue are exchanged.
 fn exchanged(nails: &[Used]) -> Option<String> {
-    let bluer = nails.iter().filter(|nail| nail.row.red_less_blue.is_some_and(|less| less < BLUER));
+    let bluer = nails.iter().filter(|nail| nail.row.is_bluer);
     let names: Vec<String> = bluer.map(|nail| nail.photo.file.clone()).collect();
     (!names.is_empty()).then(|| {
         format!(

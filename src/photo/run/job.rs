@@ -14,7 +14,7 @@ use std::time::Instant;
 use image::GrayAlphaImage;
 use rayon::prelude::*;
 
-use super::doubts::red_less_blue;
+use super::doubts::is_bluer;
 use crate::files::{Places, Staging, WriteError};
 use crate::job::Watch;
 use crate::median::median_of;
@@ -334,7 +334,7 @@ impl Work<'_> {
                     let margin = self.options.normalization.margin;
                     row.at_full_scale = normalized.at_full_scale(margin);
                     row.survey = Some(normalized.survey());
-                    row.red_less_blue = row.frame.and_then(|frame| red_less_blue(&picture.image, &frame));
+                    row.is_bluer = row.frame.is_some_and(|frame| is_bluer(&picture.image, &frame));
                     row.reason = partly(&normalized, row.at_full_scale, margin);
                     let is_large = row.frame.is_some_and(|frame| frame.width_px.min(frame.length_px) >= LEAST_SHARP_PX);
                     if row.source == Source::Detected && is_large {
