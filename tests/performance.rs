@@ -225,6 +225,12 @@ fn slips_of_names_and_units_are_warned_of() {
     answer.says("operators `A` and `a` differ in case").says("methods `Virtual` and `virtual` differ in case");
     dir.write("trials.csv", table(&rows.map(|(_, method, trial, s)| ("A", method, trial, 1000.0 * s))));
     run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).says("is time_s in ms?");
+    // One of two operators in ms, and a log that was copied under another name.
+    let of = |who: &'static str, unit: f64| [1, 2, 3].map(|k| (who, "pendant", k, unit * (2.0 - 0.3 * f64::from(k))));
+    dir.write("trials.csv", table(&[of("A", 1.0), of("B", 900.0), of("C", 1.0)].concat()));
+    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).stderr;
+    assert!(said.contains("half of the decisions of B took ") && !said.contains("decisions of A"), "{said}");
+    assert!(said.contains("A, C have the same times in all 3 trials, and count apart"), "{said}");
     dir.write("trials.csv", by_hand());
     let plain = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
     assert!(!plain.stderr.contains("warning"), "{}", plain.stderr);

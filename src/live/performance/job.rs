@@ -1,5 +1,6 @@
 //! The performance job: a table of trials in, figures, tables and pictures out.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -107,10 +108,41 @@ const LONG_S: f64 = 100.0;
 fn warnings(trials: &Trials) -> Vec<String> {
     let name = |(what, names): (&str, &[String])| twins(what, names.iter().map(String::as_str));
     let named = [("operators", &trials.operators[..]), ("methods", &trials.methods[..])].into_iter().filter_map(name);
-    let decision_s = median_of(trials.rows.iter().map(|row| row.decision_s)).filter(|median| *median > LONG_S);
-    let long = decision_s.map(|median| format!("half of the decisions took {median:.0} s or more: is time_s in ms?"));
-    named.chain(long).collect()
+    // One operator's log may be of another program.
+    let long = trials.operators.iter().enumerate().filter_map(|(k, operator)| {
+        let own = trials.rows.iter().filter(|row| row.operator == k);
+        let median_s = median_of(own.map(|row| row.decision_s)).filter(|median| *median > LONG_S)?;
+        Some(format!("half of the decisions of {operator} took {median_s:.0} s or more: is time_s in ms?"))
+    });
+    named.chain(long).chain(copied(trials)).collect()
 }
+
+/// Operators with the same trials and times, as a log that was copied under another name has.
+fn copied(trials: &Trials) -> Vec<String> {
+    let of = |k: usize| {
+        let own = trials.rows.iter().filter(move |row| row.operator == k);
+        let mut times: Vec<(usize, u32, u64)> = own.map(|row| (row.method, row.trial, row.time_s.to_bits())).collect();
+        times.sort_unstable();
+        times
+    };
+    let mut by_times: BTreeMap<Vec<(usize, u32, u64)>, Vec<&str>> = BTreeMap::new();
+    for (k, operator) in trials.operators.iter().enumerate() {
+        by_times.entry(of(k)).or_default().push(operator);
+    }
+    let copies = by_times.into_iter().filter(|(times, operators)| times.len() >= COPIED && operators.len() > 1);
+    copies
+        .map(|(times, operators)| {
+            format!(
+                "{} have the same times in all {} trials, and count apart: keep one",
+                operators.join(", "),
+                times.len()
+            )
+        })
+        .collect()
+}
+
+/// So many equal times are no chance.
+const COPIED: usize = 3;
 
 /// What was chosen or could not be known.
 fn notes(figures: &PerformanceFigures, outputs: &FolderOutputs) -> Vec<String> {
