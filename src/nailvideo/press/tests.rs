@@ -253,7 +253,7 @@ fn a_video_that_begins_while_the_finger_presses_is_doubted() {
         reversed(&rows(&Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &still, whole: 100.0 }))
     };
     assert_eq!(said(-1.0, 0.6), None);
-    assert!(said(1.0, -0.6).is_some_and(|said| said.starts_with("1 of 1 presses look like releases")));
+    assert!(said(1.0, -0.6).is_some_and(|said| said.starts_with("each of 1 press(es) looks like a release")));
     // Both ends up is another thing.
     assert_eq!(said(1.0, 0.6), None);
 }
