@@ -1,9 +1,10 @@
 //! Samples of a plane as the shown picture has them, to be read between pixels.
 
-use wide::f32x4;
-
 use crate::video::{Frame, Plane, Turn};
-use crate::vision::Samples;
+use crate::vision::{Samples, reduced};
+
+/// So many points at once: as many as most machines' vectors hold.
+pub(in crate::nailvideo) const LANES: usize = 8;
 
 /// Values at the middles of equal blocks of pixels.
 #[derive(Debug, Clone)]
@@ -65,6 +66,15 @@ impl Grid {
         Self { values, size, origin: part.from.map(|at| at as f32 + middle), per_px: [1.0 / step as f32; 2] }
     }
 
+    /// Means over blocks of `block` x `block` values.
+    pub(in crate::nailvideo) fn reduced(&self, block: usize) -> Self {
+        let (values, size) = reduced(self.values.as_chunks::<1>().0, self.size, block);
+        let to_middle = |axis: usize| 0.5 * (block as f32 - 1.0) / self.per_px[axis];
+        let origin = std::array::from_fn(|axis| self.origin[axis] + to_middle(axis));
+        let per_px = self.per_px.map(|blocks| blocks / block as f32);
+        Self { values: values.into_flattened(), size, origin, per_px }
+    }
+
     /// Cb and Cr about a part of the picture; `site` is where samples lie in the blocks of pixels that they are for, as
     /// they are stored.
     pub(in crate::nailvideo) fn of_chroma(
@@ -115,7 +125,7 @@ impl Grid {
         above + q * (below - above)
     }
 
-    /// Whether [`Self::four`] may be asked for all points between these corners.
+    /// Whether [`Self::lanes`] may be asked for all points between these corners.
     pub(in crate::nailvideo) fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
         corners.iter().all(|at| {
             [0, 1].into_iter().all(|axis| {
@@ -127,27 +137,43 @@ impl Grid {
         })
     }
 
-    /// [`Self::at`] of four points that lie within the middles of the outermost blocks.
-    #[inline]
-    pub(in crate::nailvideo) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
-        let [across, down] = self.per_px.map(f32x4::splat);
-        let (u, v) = ((x - f32x4::splat(self.origin[0])) * across, (y - f32x4::splat(self.origin[1])) * down);
-        let (left, top) = (u.fast_trunc_int(), v.fast_trunc_int());
-        let (p, q) = (u - f32x4::from_i32x4(left), v - f32x4::from_i32x4(top));
-        let (left, top) = (left.to_array(), top.to_array());
+    /// [`Self::at`] of points that lie within the middles of the outermost blocks; to be compiled for whatever vectors
+    /// its caller is.
+    #[inline(always)]
+    pub(in crate::nailvideo) fn lanes(&self, x: [f32; LANES], y: [f32; LANES]) -> [f32; LANES] {
         let columns = self.size[0];
-        let mut corners = [[0.0; 4]; 4];
-        for k in 0..4 {
-            let at = top[k] as usize * columns + left[k] as usize;
-            let [above, below] = [&self.values[at..at + 2], &self.values[at + columns..at + columns + 2]];
-            [corners[0][k], corners[1][k]] = [above[0], above[1]];
-            [corners[2][k], corners[3][k]] = [below[0], below[1]];
+        let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
+        let mut first = [0_u32; LANES];
+        for k in 0..LANES {
+            let (u, v) = ((x[k] - self.origin[0]) * self.per_px[0], (y[k] - self.origin[1]) * self.per_px[1]);
+            let ((left, over_left), (top, over_top)) = (whole_and_part(u), whole_and_part(v));
+            first[k] = top.wrapping_mul(columns as u32).wrapping_add(left);
+            (p[k], q[k]) = (over_left, over_top);
         }
-        let [above, above_right, below, below_right] = corners.map(f32x4::new);
-        let above = above + p * (above_right - above);
-        let below = below + p * (below_right - below);
-        above + q * (below - above)
+        let mut corners = [[0.0; LANES]; 4];
+        for k in 0..LANES {
+            let block = &self.values[first[k] as usize..][..columns + 2];
+            [corners[0][k], corners[1][k]] = [block[0], block[1]];
+            [corners[2][k], corners[3][k]] = [block[columns], block[columns + 1]];
+        }
+        let mut values = [0.0; LANES];
+        for k in 0..LANES {
+            let above = corners[0][k] + p[k] * (corners[1][k] - corners[0][k]);
+            let below = corners[2][k] + p[k] * (corners[3][k] - corners[2][k]);
+            values[k] = above + q[k] * (below - above);
+        }
+        values
     }
+}
+
+/// A place above 0 and below 2^22 as blocks and what is over, 0 to 1: as additions, since the compiler makes no vectors of
+/// conversions that saturate.
+#[inline(always)]
+fn whole_and_part(at: f32) -> (u32, f32) {
+    /// About it numbers are whole.
+    const WHOLE: f32 = (3 << 22) as f32;
+    let above = at - 0.5 + WHOLE;
+    (above.to_bits() & 0x3f_ffff, at - (above - WHOLE))
 }
 
 #[cfg(test)]
@@ -174,9 +200,12 @@ mod tests {
                 let expected = (3.0 * (stored[0] - site.0) + 9.0 * (stored[1] - site.1)) as f32;
                 assert!((chroma[0].at(x, y) - expected).abs() <= 1e-3, "{turn:?} {site:?} {stored:?}");
             }
-            let four = grid.four(f32x4::new([2.0, 3.25, 5.5, 9.75]), f32x4::new([1.5, 8.0, 2.25, 6.0]));
-            let each = [[2.0, 1.5], [3.25, 8.0], [5.5, 2.25], [9.75, 6.0]].map(|[x, y]| grid.at(x, y));
-            assert_eq!(four.to_array(), each);
+            let (x, y) = ([2.0, 3.25, 5.5, 9.75, 0.01, 14.99, 7.0, 6.2], [1.5, 8.0, 2.25, 6.0, 0.01, 10.99, 7.0, 0.1]);
+            let (mut x, mut y): ([f32; LANES], [f32; LANES]) = (x, y);
+            if turn == Turn::Quarter {
+                (x, y) = (y, x);
+            }
+            assert_eq!(grid.lanes(x, y), std::array::from_fn(|k| grid.at(x[k], y[k])));
             assert!(grid.holds(&[[2.0, 2.0]; 4]) && !grid.holds(&[[2.0, 2.0], [2.0, 40.0], [2.0; 2], [2.0; 2]]));
             assert!(grid.at(-1.5, 3.0).is_nan() && grid.at(3.0, 40.0).is_nan());
         }

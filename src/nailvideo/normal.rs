@@ -5,13 +5,14 @@
 
 use image::{GrayImage, RgbImage};
 use ndarray::Array2;
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
-use wide::f32x4;
 
 use super::affine::Affine;
 use super::follow::{Covered, cell_at};
+use super::grid::LANES;
 use super::options::Window;
-use super::sample::{Colours, MARGIN};
+use super::sample::{Channel, Colours, MARGIN};
 
 /// Side of normalized frames and maps, pixels.
 pub(in crate::nailvideo) const SIDE: usize = 400;
@@ -22,48 +23,58 @@ fn place(side: usize, column: usize, row: usize) -> [f64; 2] {
     [at(column), -at(row)]
 }
 
-/// What becomes of a channel's values (red, green or blue as encoded, fraction of full scale; NaN off the picture), row
-/// by row, four at a time: one by one, in all channels, this took ten times as long as decoding the frame
+/// A channel's values (red, green or blue as encoded, fraction of full scale; NaN off the picture), row by row, as many
+/// at once as vectors hold: one by one, in all channels, this took ten times as long as decoding the frame
 /// (`cargo bench -p lunula-cli --bench nailvideo`).
-fn pixels<T: Copy + Default + Send>(
-    colours: &Colours,
-    frame_from_nail: &Affine,
-    channel: usize,
-    side: usize,
-    of: impl Fn(f32x4) -> [T; 4] + Sync,
-) -> Vec<T> {
-    let mut all = vec![T::default(); side * side];
+fn values(colours: &Colours, frame_from_nail: &Affine, channel: usize, side: usize) -> Vec<f32> {
+    let mut all = vec![0.0; side * side];
     let at = |column: usize, row: usize| frame_from_nail.of(place(side, column, row));
     let last = side - 1;
     let fast = colours.channel(channel, [at(0, 0), at(last, 0), at(0, last), at(last, last)]);
-    all.par_chunks_mut(side).enumerate().for_each(|(row, pixels)| {
-        let [first, second] = [0, 1].map(|column| at(column, row));
-        let along = |axis: usize, columns: f32x4| {
-            f32x4::splat(first[axis] as f32) + columns * f32x4::splat((second[axis] - first[axis]) as f32)
-        };
-        for (k, four) in pixels.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-            *four = of(match &fast {
-                Some(fast) => {
-                    let columns = f32x4::new([0.0, 1.0, 2.0, 3.0]) + f32x4::splat(4.0 * k as f32);
-                    fast.four(along(0, columns), along(1, columns))
-                }
-                None => f32x4::new(std::array::from_fn(|one| colours.at(at(4 * k + one, row))[channel] as f32)),
-            });
-        }
+    all.par_chunks_mut(side).enumerate().for_each(|(row, values)| match &fast {
+        Some(channel) => Arch::new().dispatch(Row { channel, first: at(0, row), second: at(1, row), values }),
+        None => values.iter_mut().enumerate().for_each(|(column, value)| {
+            *value = colours.at(at(column, row))[channel] as f32;
+        }),
     });
     all
 }
 
-/// A channel's levels; 0 off the picture.
-fn levels(colours: &Colours, frame_from_nail: &Affine, channel: usize, side: usize) -> Vec<u8> {
-    pixels(colours, frame_from_nail, channel, side, |parts| {
-        // Half a level more: rounded when cut. What is no number becomes 0.
-        let levels = parts * f32x4::splat(255.0) + f32x4::splat(0.5);
-        levels.max(f32x4::ZERO).min(f32x4::splat(255.0)).to_array().map(|level| level as u8)
-    })
+/// A row of points, of which the first two are given.
+struct Row<'a> {
+    channel: &'a Channel<'a>,
+    first: [f64; 2],
+    second: [f64; 2],
+    values: &'a mut [f32],
 }
 
-/// In colour, for people; the side is a multiple of 4.
+impl NullaryFnOnce for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let first = self.first.map(|at| at as f32);
+        let by: [f32; 2] = std::array::from_fn(|axis| (self.second[axis] - self.first[axis]) as f32);
+        let last = self.values.len() - 1;
+        for (chunk, values) in self.values.chunks_mut(LANES).enumerate() {
+            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+            for k in 0..LANES {
+                let column = (LANES * chunk + k).min(last) as f32;
+                (x[k], y[k]) = (first[0] + column * by[0], first[1] + column * by[1]);
+            }
+            let lanes = self.channel.lanes(x, y);
+            values.copy_from_slice(&lanes[..values.len()]);
+        }
+    }
+}
+
+/// A channel's levels; 0 off the picture.
+fn levels(colours: &Colours, frame_from_nail: &Affine, channel: usize, side: usize) -> Vec<u8> {
+    // Half a level more: rounded when cut. What is no number becomes 0.
+    values(colours, frame_from_nail, channel, side).into_iter().map(|value| (value * 255.0 + 0.5) as u8).collect()
+}
+
+/// In colour, for people.
 pub(in crate::nailvideo) fn picture(colours: &Colours, frame_from_nail: &Affine, side: usize) -> RgbImage {
     let [red, green, blue] = [0, 1, 2].map(|channel| levels(colours, frame_from_nail, channel, side));
     RgbImage::from_fn(side as u32, side as u32, |x, y| {
@@ -77,8 +88,6 @@ pub(in crate::nailvideo) fn green(colours: &Colours, frame_from_nail: &Affine) -
     let levels = levels(colours, frame_from_nail, 1, SIDE);
     GrayImage::from_raw(SIDE as u32, SIDE as u32, levels).unwrap_or_default()
 }
-
-const _: () = assert!(SIDE.is_multiple_of(4), "rows of whole fours");
 
 /// Sums over the frames of a window.
 #[derive(Debug, Clone)]
@@ -108,8 +117,8 @@ impl WindowSums {
         }
         self.frames += 1;
         let is_covered = |k: usize| covered.is_some_and(|covered| covered[cell_at(place(SIDE, k % SIDE, k / SIDE))]);
-        let pixels = pixels(colours, frame_from_nail, 1, SIDE, |parts| parts.to_array().map(f64::from));
-        for ([count, mean, squares], (k, green)) in self.sums.iter_mut().zip(pixels.into_iter().enumerate()) {
+        let values = values(colours, frame_from_nail, 1, SIDE).into_iter().map(f64::from);
+        for ([count, mean, squares], (k, green)) in self.sums.iter_mut().zip(values.enumerate()) {
             if green.is_finite() && !is_covered(k) {
                 *count += 1.0;
                 let before = green - *mean;
@@ -140,7 +149,7 @@ mod tests {
     const PLANES: Planes = Planes { turn: Turn::None, matrix: Matrix::BT709, site: (0.5, 0.5) };
 
     #[test]
-    fn four_at_a_time_are_as_one_by_one() {
+    fn many_at_a_time_are_as_one_by_one() {
         let scene = Scene::new(150.0, 3);
         let shown = scene.picture(&Shot::REST, 0);
         let frame = shown.frame(0, 0.0);

@@ -35,15 +35,22 @@ pub(crate) fn blurred(values: &[f32], size: [usize; 2], sd_px: f64) -> Vec<f32> 
     answered(made(values.as_chunks::<1>().0, size, size, filtered)).into_flattened()
 }
 
-/// At half the size: means of four; a last odd column or row is left out.
-pub(crate) fn halved(cells: &[Cell], size: [usize; 2]) -> Vec<Cell> {
-    let mean = |from: &BoxedRef<'_, Mat>, to: &mut BoxedRefMut<'_, Mat>| {
-        let half = Size::new(from.cols() / 2, from.rows() / 2);
-        let even = Rect::new(0, 0, 2 * half.width, 2 * half.height);
-        let from = Mat::roi(from, even).map_err(VisionError::of("Mat"))?;
-        imgproc::resize(&from, to, half, 0.0, 0.0, imgproc::INTER_AREA).map_err(VisionError::of("resize"))
+/// Means over blocks of `block` x `block`, and how many there are across and down; what is left over to the right and
+/// below is left out.
+pub(crate) fn reduced<const CHANNELS: usize>(
+    cells: &[[f32; CHANNELS]],
+    size: [usize; 2],
+    block: usize,
+) -> (Vec<[f32; CHANNELS]>, [usize; 2]) {
+    let to = size.map(|n| n / block);
+    let mean = |from: &BoxedRef<'_, Mat>, means: &mut BoxedRefMut<'_, Mat>| {
+        let (columns, rows, block) = (means.cols(), means.rows(), super::size(block)?);
+        let whole = Rect::new(0, 0, columns * block, rows * block);
+        let from = Mat::roi(from, whole).map_err(VisionError::of("Mat"))?;
+        let size = Size::new(columns, rows);
+        imgproc::resize(&from, means, size, 0.0, 0.0, imgproc::INTER_AREA).map_err(VisionError::of("resize"))
     };
-    answered(made(cells, size, size.map(|n| n / 2), mean))
+    (answered(made(cells, size, to, mean)), to)
 }
 
 /// How well `patch` fits at each place of a picture at which all of it lies within: correlation, -1 to 1, row by row of
@@ -148,7 +155,7 @@ mod tests {
             type Work<'a> = &'a dyn Fn() -> Vec<Cell>;
             let pairs: [(&str, Work<'_>, Work<'_>); 2] = [
                 ("smoothed", &|| plainly_smoothed(&cells, size, kernel), &|| smoothed(&cells, size, kernel)),
-                ("halved", &|| plainly_halved(&cells, size), &|| halved(&cells, size)),
+                ("halved", &|| plainly_halved(&cells, size), &|| reduced(&cells, size, 2).0),
             ];
             for (name, plain, opencv) in pairs {
                 let both = plain().into_iter().flatten().zip(opencv().into_iter().flatten());

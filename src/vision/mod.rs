@@ -28,7 +28,7 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, Sought, find_board, shows_another};
-pub(crate) use cells::{Cell, blurred, halved, matched, smoothed};
+pub(crate) use cells::{Cell, blurred, matched, reduced, smoothed};
 pub(crate) use extreme::{Extreme, extreme};
 pub(crate) use image::{closed_line, part_resized, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};

@@ -48,25 +48,23 @@ impl Rim {
         (motion, gain, offset): (&Affine, f64, f64),
         residuals: &[f32],
     ) -> Option<Self> {
-        let fitted = template.pixels.iter().zip(residuals).filter(|(pixel, _)| pixel.even);
-        Self::with(FEWEST_BY_FIT, fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
-        let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
+        let even = residuals.iter().map(|residual| residual.abs()).take(template.even);
+        Self::with(FEWEST_BY_FIT, &template.pixels.cells, even.collect())?;
+        let mut values = Vec::new();
+        sight.each(motion, &template.corners, template.all.places(), &mut values);
         let (gain, offset) = (gain as f32, offset as f32);
-        let at = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
-        let mut values = Vec::with_capacity(template.all.len());
-        sight.each(&template.corners.map(at), template.all.iter().map(|dot| at(dot.at)), &mut values);
-        let all = template.all.iter().zip(values);
-        let all = all.map(|(dot, value)| (dot.cell, (gain * dot.value + offset - value).abs()));
-        Self::with(FEWEST_CELLS, all.collect())
+        let all = template.all.values().iter().zip(values);
+        let all = all.map(|(expected, value)| (gain * expected + offset - value).abs());
+        Self::with(FEWEST_CELLS, &template.all.cells, all.collect())
     }
 
     /// Of residuals in cells, where as many cells touch each other.
-    fn with(fewest: usize, residuals: Vec<(u16, f32)>) -> Option<Self> {
+    fn with(fewest: usize, cells: &[u16], residuals: Vec<f32>) -> Option<Self> {
         // Their own SD: a fit's has as many steep pixels, which any error of the place moves.
-        let mut sorted: Vec<f32> = residuals.iter().map(|(_, residual)| *residual).filter(|r| r.is_finite()).collect();
+        let mut sorted: Vec<f32> = residuals.iter().copied().filter(|r| r.is_finite()).collect();
         let limit = (TUKEY_SDS * sd_of(&mut sorted)?.max(LEAST_SD)) as f32;
         let mut counts = [[0_u32; 2]; CELLS * CELLS];
-        for (cell, residual) in residuals {
+        for (&cell, residual) in cells.iter().zip(residuals) {
             let [all, beside] = &mut counts[usize::from(cell)];
             *all += 1;
             // What is out of the picture says nothing.

@@ -8,13 +8,14 @@
 //! With `findTransformECC` on the locally normalized luma a rod over the nail costs 0.6.
 
 use nalgebra::{SMatrix, SVector};
-use wide::f32x4;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::cover::{Covered, Rim};
 use super::sight::Sight;
-use super::template::{BLOCKS, MOTION, TUKEY_SDS, Template, sd_of};
+use super::template::{BLOCKS, MOTION, Pixels, TUKEY_SDS, Template, block_of, sd_of};
 use crate::median::median_of;
 use crate::nailvideo::affine::Affine;
+use crate::nailvideo::grid::LANES;
 
 /// The motion's parameters, gain and offset.
 const UNKNOWNS: usize = MOTION + 2;
@@ -36,9 +37,6 @@ const LEAST_SD: f64 = 0.004;
 /// In the first steps the weights reach farther: what a start that is off makes of edges is no outlier yet (without it
 /// starts 4 px off stayed there).
 const WIDER: [f64; 2] = [4.0, 2.0];
-/// These steps look at one of so many pixels, of a template that has enough of them: the last ones decide.
-const SPARSE: usize = 4;
-const FEWEST_SPARSE: usize = 3000;
 
 /// A fit of the template to a frame.
 #[derive(Debug, Clone)]
@@ -124,9 +122,9 @@ fn fit(
     // Until the step after a look is so small that there is no need for another.
     let (sd, covariance, last_step_px) = loop {
         let wider = WIDER.get(k).copied();
-        let every = if wider.is_some() && template.pixels.len() >= FEWEST_SPARSE { SPARSE } else { 1 };
-        let sd = look(template, sight, &motion, [gain, offset], every, covered, scratch)? * wider.unwrap_or(1.0);
-        let (normal, right) = equations(template, scratch, every, sd);
+        let pixels = template.sparse.as_ref().filter(|_| wider.is_some()).unwrap_or(&template.pixels);
+        let sd = look(pixels, template, sight, &motion, [gain, offset], covered, scratch)? * wider.unwrap_or(1.0);
+        let (normal, right) = equations(pixels, &scratch.residuals, sd);
         let normal = normal.cholesky()?;
         let step = normal.solve(&right);
         // The step moves the template; the frame's motion is that of the frame without it.
@@ -142,9 +140,9 @@ fn fit(
             continue;
         }
         let creeps = step_px > CREEPING * before_px && step_px <= MOST_LAST_STEP_PX;
-        if step_px < LAST_STEP_PX || creeps || k >= MOST_STEPS {
+        if step_px < LAST_STEP_PX * template.step || creeps || k >= MOST_STEPS {
             let inverse = normal.inverse();
-            break (sd, inverse * pulls(template, scratch, sd)? * inverse / (gain * gain), step_px);
+            break (sd, inverse * pulls(pixels, &scratch.residuals, sd)? * inverse / (gain * gain), step_px);
         }
         before_px = step_px;
     };
@@ -160,111 +158,138 @@ fn farthest(by: &[f64; MOTION]) -> f64 {
     one(0).hypot(one(3))
 }
 
-/// Residuals (template less frame) of one of `every` pixels into the scratch; their SD.
+/// Residuals (template less frame) of some of its pixels into the scratch; their SD.
 fn look(
+    pixels: &Pixels,
     template: &Template,
     sight: &Sight,
     motion: &Affine,
     [gain, offset]: [f64; 2],
-    every: usize,
     covered: Option<&Covered>,
     scratch: &mut Scratch,
 ) -> Option<f64> {
-    let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
+    let Scratch { residuals, values, sorted } = scratch;
+    sight.each(motion, &template.corners, pixels.places(), values);
     let (gain, offset) = (gain as f32, offset as f32);
-    let at = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
-    let places = template.pixels.iter().step_by(every).map(|pixel| at(pixel.at));
-    sight.each(&template.corners.map(at), places, &mut scratch.values);
-    scratch.residuals.clear();
-    let pixels = template.pixels.iter().step_by(every).zip(&scratch.values);
-    scratch.residuals.extend(pixels.map(|(pixel, value)| gain * pixel.value() + offset - value));
+    residuals.clear();
+    residuals.extend(pixels.values().iter().zip(&*values).map(|(expected, value)| gain * expected + offset - value));
     if let Some(covered) = covered {
         // What is infinitely off has no weight, and what is no number no texture.
-        let looked_at = scratch.residuals.iter_mut().zip(&mut scratch.values);
-        for (pixel, (residual, value)) in template.pixels.iter().step_by(every).zip(looked_at) {
-            if covered[usize::from(pixel.cell)] {
+        for ((&cell, residual), value) in pixels.cells.iter().zip(&mut *residuals).zip(values) {
+            if covered[usize::from(cell)] {
                 (*residual, *value) = (f32::INFINITY, f32::NAN);
             }
         }
     }
-    scratch.sorted.clear();
-    scratch.sorted.extend(scratch.residuals.iter().map(|r| r.abs()).filter(|r| r.is_finite()));
-    Some(sd_of(&mut scratch.sorted)?.max(LEAST_SD))
+    sorted.clear();
+    sorted.extend(residuals.iter().map(|residual| residual.abs()));
+    sorted.retain(|size| size.is_finite());
+    Some(sd_of(sorted)?.max(LEAST_SD))
 }
 
-#[inline]
-fn weight(residual: f32, per_limit: f32) -> f32 {
+/// For [`weight_of`].
+fn per_limit(sd: f64) -> f32 {
+    (1.0 / (TUKEY_SDS * sd)) as f32
+}
+
+#[inline(always)]
+fn weight_of(residual: f32, per_limit: f32) -> f32 {
     let part = residual * per_limit;
     let rest = (1.0 - part * part).max(0.0);
     // A NaN has become nothing: `max` takes the other.
     rest * rest
 }
 
-/// Weighted normal equations of a step, of one of `every` pixels.
+/// Weighted normal equations of a step.
 fn equations(
-    template: &Template,
-    scratch: &Scratch,
-    every: usize,
+    pixels: &Pixels,
+    residuals: &[f32],
     sd: f64,
 ) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>) {
-    // J'WJ's upper triangle in fours of columns, and J'Wr: single precision within a run of pixels.
-    const RUN: usize = 64;
-    let per_limit = (1.0 / (TUKEY_SDS * sd)) as f32;
-    let mut sums = [[0.0_f64; UNKNOWNS]; UNKNOWNS + 1];
-    let mut pixels = template.pixels.iter().step_by(every);
-    for residuals in scratch.residuals.chunks(RUN) {
-        let (mut left, mut right) = ([f32x4::ZERO; UNKNOWNS + 1], [f32x4::ZERO; UNKNOWNS + 1]);
-        for (&residual, pixel) in residuals.iter().zip(pixels.by_ref()) {
-            let weight = weight(residual, per_limit);
-            if weight == 0.0 {
-                continue;
-            }
-            let [low, high] = pixel.halves();
-            let mut add = |k: usize, part: f32, is_left: bool| {
-                let part = f32x4::splat(weight * part);
-                if is_left {
-                    left[k] += part * low;
-                }
-                right[k] += part * high;
-            };
-            pixel.row.iter().enumerate().for_each(|(k, &part)| add(k, part, k < 4));
-            add(UNKNOWNS, residual, true);
-        }
-        for (k, sums) in sums.iter_mut().enumerate() {
-            let parts = left[k].to_array().into_iter().chain(right[k].to_array());
-            sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += f64::from(part));
-        }
-    }
+    let sums = Arch::new().dispatch(Sums { pixels, residuals, per_limit: per_limit(sd) });
     let normal: SMatrix<f64, UNKNOWNS, UNKNOWNS> =
         SMatrix::from_fn(|row, column| sums[row.min(column)][row.max(column)]);
-    let right = SVector::from_row_slice(&sums[UNKNOWNS]);
+    let right = SVector::from_fn(|row, _| sums[row][UNKNOWNS]);
     // Nothing moves along what nothing determines.
     let least = 1e-9 * normal.trace() / UNKNOWNS as f64;
     (normal + SMatrix::identity() * least, right)
 }
 
+/// J'WJ's upper triangle and J'Wr, by the widest vectors that the machine has: single precision within a run of pixels.
+struct Sums<'a> {
+    pixels: &'a Pixels,
+    residuals: &'a [f32],
+    per_limit: f32,
+}
+
+/// Pixels of a run.
+const RUN: usize = 128;
+
+impl NullaryFnOnce for Sums<'_> {
+    type Output = [[f64; UNKNOWNS + 1]; UNKNOWNS];
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let mut sums = [[[0.0; LANES]; UNKNOWNS + 1]; UNKNOWNS];
+        // Of the last run what is beyond the end has no weight.
+        let mut columns = [[1.0_f32; RUN]; UNKNOWNS + 1];
+        for (k, residuals) in self.residuals.chunks(RUN).enumerate() {
+            let run = k * RUN..k * RUN + residuals.len();
+            for (column, row) in columns.iter_mut().zip(&self.pixels.rows) {
+                column[..residuals.len()].copy_from_slice(&row[run.clone()]);
+            }
+            let mut weights = [0.0_f32; RUN];
+            for ((weight, of), &residual) in weights.iter_mut().zip(&mut columns[UNKNOWNS]).zip(residuals) {
+                *weight = weight_of(residual, self.per_limit);
+                // What is infinite or no number has no weight.
+                *of = if *weight > 0.0 { residual } else { 0.0 };
+            }
+            for (k, sums) in sums.iter_mut().enumerate() {
+                let weighted: [f32; RUN] = std::array::from_fn(|at| weights[at] * columns[k][at]);
+                for (sums, column) in sums.iter_mut().zip(&columns).skip(k) {
+                    add_products(sums, &weighted, column);
+                }
+            }
+        }
+        sums.map(|row| row.map(|lanes| lanes.iter().sum()))
+    }
+}
+
+/// Adds the products of two columns of a run.
+#[inline(always)]
+fn add_products(sums: &mut [f64; LANES], one: &[f32; RUN], other: &[f32; RUN]) {
+    let mut of_run = [0.0; LANES];
+    for (one, other) in one.as_chunks::<LANES>().0.iter().zip(other.as_chunks::<LANES>().0) {
+        for k in 0..LANES {
+            of_run[k] += one[k] * other[k];
+        }
+    }
+    for k in 0..LANES {
+        sums[k] += f64::from(of_run[k]);
+    }
+}
+
 /// What blocks of the box pull at the parameters, squares and products summed over the blocks: residuals within a block
 /// go together, as an encoder moves and keeps whole blocks of its own, so that blocks are counted and not pixels
 /// (K.-Y. Liang and S. L. Zeger, Biometrika 73 (1986) 13, doi:10.1093/biomet/73.1.13). `None` of too few blocks.
-fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64, UNKNOWNS, UNKNOWNS>> {
-    let per_limit = (1.0 / (TUKEY_SDS * sd)) as f32;
-    let mut blocks = [[f32x4::ZERO; 2]; BLOCKS * BLOCKS];
+fn pulls(pixels: &Pixels, residuals: &[f32], sd: f64) -> Option<SMatrix<f64, UNKNOWNS, UNKNOWNS>> {
+    let per_limit = per_limit(sd);
+    let mut blocks = [[0.0_f32; UNKNOWNS]; BLOCKS * BLOCKS];
     let mut has_weight = [false; BLOCKS * BLOCKS];
-    for (pixel, &residual) in template.pixels.iter().zip(&scratch.residuals) {
-        let weight = weight(residual, per_limit);
+    for (k, (&cell, &residual)) in pixels.cells.iter().zip(residuals).enumerate() {
+        let weight = weight_of(residual, per_limit);
         if weight == 0.0 {
             continue;
         }
-        let pull = f32x4::splat(weight * residual);
-        let block = &mut blocks[pixel.block()];
+        let (pull, at) = (weight * residual, block_of(cell));
         // In a frame that is the template's own, to the bit, they pull at nothing.
-        has_weight[pixel.block()] = true;
-        block.iter_mut().zip(pixel.halves()).for_each(|(sum, half)| *sum += pull * half);
+        has_weight[at] = true;
+        blocks[at].iter_mut().zip(&pixels.rows).for_each(|(sum, row)| *sum += pull * row[k]);
+        blocks[at][UNKNOWNS - 1] += pull;
     }
     let (mut sums, mut count) = (SMatrix::zeros(), 0.0);
-    for ([left, right], _) in blocks.into_iter().zip(has_weight).filter(|(_, has_weight)| *has_weight) {
-        let mut parts = left.to_array().into_iter().chain(right.to_array());
-        let pull: SVector<f64, UNKNOWNS> = SVector::from_fn(|_, _| parts.next().map_or(0.0, f64::from));
+    for (pulls, _) in blocks.iter().zip(has_weight).filter(|(_, has_weight)| *has_weight) {
+        let pull: SVector<f64, UNKNOWNS> = SVector::from_fn(|row, _| f64::from(pulls[row]));
         sums += pull * pull.transpose();
         count += 1.0;
     }
@@ -276,23 +301,21 @@ fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64,
 /// Correlation and share of the evenly spread pixels that have a weight, and the share outside of the picture.
 fn agreement(template: &Template, scratch: &Scratch, sd: f64) -> (f64, f64, f64) {
     let limit = TUKEY_SDS * sd;
-    let (mut all, mut out, mut n) = (0.0, 0.0, 0.0);
+    let (mut out, mut n) = (0.0, 0.0);
     let (mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for ((pixel, &residual), &value) in template.pixels.iter().zip(&scratch.residuals).zip(&scratch.values) {
-        if !pixel.even {
-            continue;
-        }
-        all += 1.0;
+    let seen = scratch.residuals.iter().zip(&scratch.values).zip(template.pixels.values());
+    for ((&residual, &value), &expected) in seen.take(template.even) {
         if residual.is_nan() {
             out += 1.0;
         } else if f64::from(residual).abs() < limit {
-            let (p, q) = (f64::from(pixel.value()), f64::from(value));
+            let (p, q) = (f64::from(expected), f64::from(value));
             (n, x, y) = (n + 1.0, x + p, y + q);
             (xx, xy, yy) = (xx + p * p, xy + p * q, yy + q * q);
         }
     }
     let (sxx, sxy, syy) = (xx - x * x / n, xy - x * y / n, yy - y * y / n);
     let ncc = sxy / (sxx * syy).sqrt();
+    let all = template.even as f64;
     (if ncc.is_finite() { ncc } else { 0.0 }, n / all, out / all)
 }
 
@@ -300,10 +323,10 @@ fn agreement(template: &Template, scratch: &Scratch, sd: f64) -> (f64, f64, f64)
 fn texture(template: &Template, scratch: &Scratch) -> f64 {
     const FEWEST: f64 = 8.0;
     let mut sums = [[0.0_f64; 6]; BLOCKS * BLOCKS];
-    for (pixel, &value) in template.pixels.iter().zip(&scratch.values).filter(|(pixel, v)| pixel.even && v.is_finite())
-    {
-        let (p, q) = (f64::from(pixel.value()), f64::from(value));
-        let of = &mut sums[pixel.block()];
+    let seen = scratch.values.iter().zip(template.pixels.values()).zip(&template.pixels.cells);
+    for ((&value, &expected), &cell) in seen.take(template.even).filter(|((value, _), _)| value.is_finite()) {
+        let (p, q) = (f64::from(expected), f64::from(value));
+        let of = &mut sums[block_of(cell)];
         of.iter_mut().zip([1.0, p, q, p * p, p * q, q * q]).for_each(|(sum, part)| *sum += part);
     }
     let correlation = |&[n, x, y, xx, xy, yy]: &[f64; 6]| {

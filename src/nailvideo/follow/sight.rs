@@ -5,9 +5,10 @@
 //! (`follow::tests`). G is made of block means, blurred: as smooth as it is, nothing
 //! is lost between them, and it costs a sixteenth.
 
-use wide::f32x4;
+use pulp::{Arch, NullaryFnOnce};
 
-use crate::nailvideo::grid::{Grid, Part};
+use crate::nailvideo::affine::Affine;
+use crate::nailvideo::grid::{Grid, LANES, Part};
 use crate::vision::{Samples, smoothed};
 
 /// Blur, of the nail's width, and at least (measured on the phantom: 1/16 is pulled 0.18 px along a pressed nail of 190
@@ -35,14 +36,15 @@ pub(super) struct Sight {
 impl Sight {
     /// Of a part of a frame in blocks of `step` pixels, blurred over `sd_px` pixels for what is taken off.
     pub(super) fn new(samples: &Samples<'_>, part: Part, step: usize, sd_px: f64) -> Self {
-        let low_step = step * ((sd_px / step as f64 / LEAST_SD_BLOCKS) as usize).max(1);
-        let mut low = Grid::of_luma(samples, part, low_step);
-        let sd = sd_px / low_step as f64;
+        let luma = Grid::of_luma(samples, part, step);
+        let block = ((sd_px / step as f64 / LEAST_SD_BLOCKS) as usize).clamp(1, luma.size[0].min(luma.size[1]));
+        let mut low = luma.reduced(block);
+        let sd = sd_px / (step * block) as f64;
         let weights: [f64; TAPS] = std::array::from_fn(|k| (-0.5 * ((k as f64 - 12.0) / sd).powi(2)).exp());
         let sum: f64 = weights.iter().sum();
         let kernel = weights.map(|weight| (weight / sum) as f32);
-        low.values = smoothed(low.values.as_chunks::<1>().0, low.size, kernel).into_iter().flatten().collect();
-        Self { luma: Grid::of_luma(samples, part, step), low }
+        low.values = smoothed(low.values.as_chunks::<1>().0, low.size, kernel).into_flattened();
+        Self { luma, low }
     }
 
     /// The locally normalized luma at a point of the frame; NaN outside.
@@ -52,43 +54,19 @@ impl Sight {
         (self.luma.at(x, y) - low) / (low + DARK)
     }
 
-    /// [`Self::at`] of each of these points, which lie between these corners: four at once where none is outside.
-    pub(super) fn each(
-        &self,
-        corners: &[[f32; 2]; 4],
-        mut places: impl Iterator<Item = [f32; 2]>,
-        values: &mut Vec<f32>,
-    ) {
+    /// [`Self::at`] of each of these points once `motion` has moved them; all lie between these corners.
+    pub(super) fn each(&self, motion: &Affine, corners: &[[f32; 2]; 4], [x, y]: [&[f32]; 2], values: &mut Vec<f32>) {
+        let motion = motion.0.map(|part| part as f32);
+        let [a, b, c, d, e, f] = motion;
+        let moved = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
         values.clear();
-        if !self.holds(corners) {
-            values.extend(places.map(|[x, y]| self.at(x, y)));
-            return;
+        let corners = corners.map(moved);
+        if self.luma.holds(&corners) && self.low.holds(&corners) {
+            values.resize(x.len(), 0.0);
+            Arch::new().dispatch(Each { sight: self, motion, x, y, values });
+        } else {
+            values.extend(x.iter().zip(y).map(|(&x, &y)| moved([x, y])).map(|[x, y]| self.at(x, y)));
         }
-        let mut count = 0;
-        while let Some(first) = places.next() {
-            count += 1;
-            // The last four may be fewer: the others are there twice.
-            let four: [[f32; 2]; 4] = std::array::from_fn(|k| {
-                let next = if k == 0 { None } else { places.next() };
-                count += usize::from(next.is_some());
-                next.unwrap_or(first)
-            });
-            let [x, y] = [0, 1].map(|axis| f32x4::new(four.map(|at| at[axis])));
-            values.extend(self.four(x, y).to_array());
-        }
-        values.truncate(count);
-    }
-
-    /// Whether [`Self::four`] may be asked for all points between these corners.
-    fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
-        self.luma.holds(corners) && self.low.holds(corners)
-    }
-
-    /// [`Self::at`] of four points of which [`Self::holds`] is true.
-    #[inline]
-    fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
-        let low = self.low.four(x, y);
-        (self.luma.four(x, y) - low) / (low + f32x4::splat(DARK))
     }
 
     /// The same at every block, row by row, with columns and rows.
@@ -105,4 +83,48 @@ impl Sight {
         let at = |block: f64, axis: usize| block / f64::from(per_px[axis]) + f64::from(origin[axis]);
         [at(column, 0), at(row, 1)]
     }
+}
+
+/// Points that lie within a sight's grids, as many at once as the machine's vectors hold.
+struct Each<'a> {
+    sight: &'a Sight,
+    motion: [f32; 6],
+    x: &'a [f32],
+    y: &'a [f32],
+    values: &'a mut [f32],
+}
+
+impl NullaryFnOnce for Each<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { sight, motion, x, y, values } = self;
+        let ((xs, x_rest), (ys, y_rest)) = (x.as_chunks(), y.as_chunks());
+        let (values, rest) = values.as_chunks_mut();
+        for ((values, &x), &y) in values.iter_mut().zip(xs).zip(ys) {
+            *values = lanes(sight, motion, x, y);
+        }
+        if let (Some(&x), Some(&y)) = (x_rest.first(), y_rest.first()) {
+            // The last ones may be fewer: the first of them is there as often as one is missing.
+            let (mut x, mut y) = ([x; LANES], [y; LANES]);
+            x[..x_rest.len()].copy_from_slice(x_rest);
+            y[..y_rest.len()].copy_from_slice(y_rest);
+            rest.copy_from_slice(&lanes(sight, motion, x, y)[..rest.len()]);
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes(sight: &Sight, [a, b, c, d, e, f]: [f32; 6], x: [f32; LANES], y: [f32; LANES]) -> [f32; LANES] {
+    let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
+    for k in 0..LANES {
+        u[k] = a * x[k] + b * y[k] + c;
+        v[k] = d * x[k] + e * y[k] + f;
+    }
+    let (mut values, low) = (sight.luma.lanes(u, v), sight.low.lanes(u, v));
+    for k in 0..LANES {
+        values[k] = (values[k] - low[k]) / (low[k] + DARK);
+    }
+    values
 }

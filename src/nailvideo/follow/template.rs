@@ -2,15 +2,16 @@
 //!
 //! It is never learnt again from frames that were followed: errors would add up (0.4 to 0.7 px in 24 frames, measured).
 
-use wide::f32x4;
-
 use super::sight::Sight;
-use crate::median::{SD_OF_MAD, median, median_of};
+use crate::median::{SD_OF_MAD, median_of};
 use crate::nailvideo::affine::Affine;
 
 /// Of these pixels the fit is made; half of them those of the steepest slopes, half spread evenly (measured: 6000 give
 /// the accuracy of all).
 const PIXELS: usize = 6000;
+/// The first steps look at one of so many of them, of a template that has enough: the last ones decide.
+const SPARSE: usize = 4;
+const FEWEST_SPARSE: usize = 3000;
 /// The box about the nail that is followed, of the nail's own (section 4.2.2's margin).
 pub(super) const BOX: f64 = 1.25;
 
@@ -27,60 +28,70 @@ const FEWEST_PIXELS: usize = 60;
 /// Parameters of a motion: displacements in pixels at the nail's half extent: of x by x, y and 1, of y by x, y and 1.
 pub(super) const MOTION: usize = 6;
 
-/// One pixel of the template.
+/// A pixel.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pixel {
-    pub(super) at: [f32; 2],
-    /// How the value changes with the motion's parameters; the value; 1: a row of the least squares.
-    pub(super) row: [f32; MOTION + 2],
-    /// One of those that are spread evenly.
-    pub(super) even: bool,
+struct Pixel {
+    at: [f32; 2],
+    /// How the value changes with the motion's parameters, and the value.
+    row: [f32; MOTION + 1],
     /// The cell of the nail's box that it lies in, of [`CELLS`] across and down.
-    pub(super) cell: u16,
+    cell: u16,
 }
 
-/// One that need not be followed by.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Dot {
-    pub(super) at: [f32; 2],
-    pub(super) value: f32,
-    pub(super) cell: u16,
+/// Pixels of the template, a column for each of their numbers: as many pixels at once as vectors hold.
+#[derive(Debug)]
+pub(super) struct Pixels {
+    pub(super) at: [Vec<f32>; 2],
+    /// How the value changes with the motion's parameters, and the value: columns of the least squares.
+    pub(super) rows: [Vec<f32>; MOTION + 1],
+    /// The cell of the nail's box that each lies in, of [`CELLS`] across and down.
+    pub(super) cells: Vec<u16>,
+}
+
+impl Pixels {
+    fn of(pixels: &[Pixel]) -> Self {
+        Self {
+            at: std::array::from_fn(|axis| pixels.iter().map(|pixel| pixel.at[axis]).collect()),
+            rows: std::array::from_fn(|k| pixels.iter().map(|pixel| pixel.row[k]).collect()),
+            cells: pixels.iter().map(|pixel| pixel.cell).collect(),
+        }
+    }
+
+    pub(super) fn values(&self) -> &[f32] {
+        &self.rows[MOTION]
+    }
+
+    pub(super) fn places(&self) -> [&[f32]; 2] {
+        self.at.each_ref().map(Vec::as_slice)
+    }
 }
 
 /// The template at one scale.
 #[derive(Debug)]
 pub(super) struct Template {
-    pub(super) pixels: Vec<Pixel>,
-    /// All that were to choose from.
-    pub(super) all: Vec<Dot>,
+    pub(super) pixels: Pixels,
+    /// So many of them, the first ones, are spread evenly.
+    pub(super) even: usize,
+    /// One of so many of them, where they are enough for that.
+    pub(super) sparse: Option<Pixels>,
+    /// All that were to choose from, to look at.
+    pub(super) all: Pixels,
     /// Of the box that all pixels lie in.
     pub(super) corners: [[f32; 2]; 4],
+    /// Pixels of a block.
+    pub(super) step: f64,
     /// The nail's middle, pixels.
     pub(super) middle: [f64; 2],
     /// Half of the nail's larger extent, pixels: where the parameters are displacements.
     pub(super) radius: f64,
 }
 
-impl Pixel {
-    #[inline]
-    pub(super) fn value(&self) -> f32 {
-        self.row[MOTION]
-    }
-
-    /// The block that it lies in, of [`BLOCKS`] across and down.
-    #[inline]
-    pub(super) fn block(&self) -> usize {
-        const CELLS_OF_BLOCK: usize = CELLS / BLOCKS;
-        let cell = usize::from(self.cell);
-        cell % CELLS / CELLS_OF_BLOCK + BLOCKS * (cell / CELLS / CELLS_OF_BLOCK)
-    }
-
-    /// The first and the last four of its row.
-    #[inline]
-    pub(super) fn halves(&self) -> [f32x4; 2] {
-        let [a, b, c, d, e, f, g, h] = self.row;
-        [f32x4::new([a, b, c, d]), f32x4::new([e, f, g, h])]
-    }
+/// The block that a cell lies in, of [`BLOCKS`] across and down.
+#[inline]
+pub(super) fn block_of(cell: u16) -> usize {
+    const CELLS_OF_BLOCK: usize = CELLS / BLOCKS;
+    let cell = usize::from(cell);
+    cell % CELLS / CELLS_OF_BLOCK + BLOCKS * (cell / CELLS / CELLS_OF_BLOCK)
 }
 
 impl Template {
@@ -111,8 +122,11 @@ impl Template {
         };
         let ([left, right], [top, bottom]) = (side(0), side(1));
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-        let dots = all.iter().map(|pixel| Dot { at: pixel.at, value: pixel.value(), cell: pixel.cell }).collect();
-        Self { pixels: chosen(all), all: dots, corners, middle, radius }
+        let whole = Pixels::of(&all);
+        let (chosen, even) = chosen(all);
+        let few = || chosen.iter().step_by(SPARSE).copied().collect::<Vec<_>>();
+        let sparse = (chosen.len() >= FEWEST_SPARSE).then(|| Pixels::of(&few()));
+        Self { pixels: Pixels::of(&chosen), even, sparse, all: whole, corners, step: step as f64, middle, radius }
     }
 
     /// Share of the slopes' energy that is noise, 0 to 1. The noise is what a difference shows that smooth shading and
@@ -122,15 +136,16 @@ impl Template {
         /// Median of the difference's size, in SDs of a normal distribution's noise.
         const SDS: f64 = 0.6745 * 6.0;
         let h = step as f32;
-        let even = || self.pixels.iter().filter(|pixel| pixel.even);
-        let difference = |pixel: &Pixel| {
-            let [x, y] = pixel.at;
+        let difference = |k: usize| {
+            let [x, y] = [0, 1].map(|axis| self.pixels.at[axis][k]);
             let row = |dy: f32| sight.at(x - h, y + dy) - 2.0 * sight.at(x, y + dy) + sight.at(x + h, y + dy);
             (row(-h) - 2.0 * row(0.0) + row(h)).abs()
         };
-        let sizes = even().map(difference).filter(|size| size.is_finite());
+        let sizes = (0..self.even).map(difference).filter(|size| size.is_finite());
         let median = median_of(sizes.map(f64::from)).unwrap_or(0.0);
-        let all = even().map(slope2).sum::<f64>() / even().count().max(1) as f64;
+        let slopes =
+            [2, 5].map(|k| self.pixels.rows[k][..self.even].iter().map(|slope| f64::from(*slope).powi(2)).sum());
+        let all = slopes.iter().sum::<f64>() / self.even.max(1) as f64;
         // A slope is half the difference of two values, and there are two of them.
         let noise = (median / SDS / step as f64).powi(2);
         if all > 0.0 { (noise / all).min(1.0) } else { 1.0 }
@@ -158,7 +173,12 @@ pub(in crate::nailvideo) fn cell_at(place: [f64; 2]) -> usize {
 
 /// The SD of residuals by the median of their sizes; `None` of too few.
 pub(super) fn sd_of(sizes: &mut [f32]) -> Option<f64> {
-    (sizes.len() >= FEWEST_PIXELS).then(|| median(sizes)).flatten().map(|median| SD_OF_MAD * f64::from(median))
+    if sizes.len() < FEWEST_PIXELS {
+        return None;
+    }
+    // Sizes are in the order of their bits.
+    let (_, median, _) = sizes.select_nth_unstable_by_key(sizes.len() / 2, |size| size.to_bits());
+    Some(SD_OF_MAD * f64::from(*median))
 }
 
 /// The square of the slope along x and y.
@@ -173,27 +193,27 @@ fn pixel(sight: &Sight, at: [f64; 2], step: usize, middle: [f64; 2], radius: f64
     let dx = 0.5 * (sight.at(x + h, y) - sight.at(x - h, y)) / h;
     let dy = 0.5 * (sight.at(x, y + h) - sight.at(x, y - h)) / h;
     let local = [0, 1].map(|axis| ((at[axis] - middle[axis]) / radius) as f32);
-    let row = [dx * local[0], dx * local[1], dx, dy * local[0], dy * local[1], dy, value, 1.0];
-    (value + dx + dy).is_finite().then_some(Pixel { at: [x, y], row, even: false, cell: 0 })
+    let row = [dx * local[0], dx * local[1], dx, dy * local[0], dy * local[1], dy, value];
+    (value + dx + dy).is_finite().then_some(Pixel { at: [x, y], row, cell: 0 })
 }
 
-/// Half spread evenly, half the steepest of the others.
-fn chosen(mut all: Vec<Pixel>) -> Vec<Pixel> {
+/// Half spread evenly, half the steepest of the others; and how many are spread evenly.
+fn chosen(all: Vec<Pixel>) -> (Vec<Pixel>, usize) {
     let count = all.len();
     if count <= PIXELS {
-        all.iter_mut().for_each(|pixel| pixel.even = true);
-        return all;
+        return (all, count);
     }
     let (mut even, mut rest) = (Vec::with_capacity(PIXELS), Vec::with_capacity(count));
-    for (k, mut pixel) in all.into_iter().enumerate() {
+    for (k, pixel) in all.into_iter().enumerate() {
         // A step that is no divisor of a row's length spreads over columns as well.
-        pixel.even = k * (PIXELS / 2) / count != (k + 1) * (PIXELS / 2) / count;
-        if pixel.even { even.push(pixel) } else { rest.push((k, pixel)) }
+        let is_even = k * (PIXELS / 2) / count != (k + 1) * (PIXELS / 2) / count;
+        if is_even { even.push(pixel) } else { rest.push((k, pixel)) }
     }
     rest.sort_by(|(i, a), (j, b)| slope2(b).total_cmp(&slope2(a)).then(i.cmp(j)));
     rest.truncate(PIXELS - even.len());
     // Neighbours in memory are neighbours in the frame.
     rest.sort_by_key(|(k, _)| *k);
+    let count = even.len();
     even.extend(rest.into_iter().map(|(_, pixel)| pixel));
-    even
+    (even, count)
 }

@@ -1,10 +1,10 @@
 //! Colours of a frame about the nail, read through its motion.
 
-use wide::f32x4;
+use pulp::{Arch, NullaryFnOnce};
 
-use super::region::Group;
+use super::region::{Group, NEAR};
 use crate::nailvideo::affine::Affine;
-use crate::nailvideo::grid::{Grid, Part, samples, shown_size};
+use crate::nailvideo::grid::{Grid, LANES, Part, samples, shown_size};
 use crate::video::{Frame, Info, Matrix, Turn};
 
 /// Where a file that does not say so has its chroma samples: on the left, as H.264 and HEVC say.
@@ -31,6 +31,8 @@ pub(in crate::nailvideo) struct Colours {
     luma: Grid,
     chroma: Option<[Grid; 2]>,
     matrix: Matrix,
+    /// Whether [`Grid::lanes`] may be asked for all points that are near.
+    holds_near: bool,
 }
 
 /// A channel of a frame, where it is linear in the samples.
@@ -43,14 +45,15 @@ pub(in crate::nailvideo) struct Channel<'a> {
 }
 
 impl Channel<'_> {
-    /// Of four points: one of [`Colours::at`].
-    #[inline]
-    pub(in crate::nailvideo) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
+    /// Of some points: one of [`Colours::at`]; to be compiled for whatever vectors its caller is.
+    #[inline(always)]
+    pub(in crate::nailvideo) fn lanes(&self, x: [f32; LANES], y: [f32; LANES]) -> [f32; LANES] {
         let of_chroma = match &self.chroma {
-            Ok(grid) => grid.four(x, y),
-            Err(everywhere) => f32x4::splat(*everywhere),
+            Ok(grid) => grid.lanes(x, y),
+            Err(everywhere) => [*everywhere; LANES],
         };
-        f32x4::splat(self.luma.0) * self.luma.1.four(x, y) + of_chroma + f32x4::splat(self.added)
+        let luma = self.luma.1.lanes(x, y);
+        std::array::from_fn(|k| self.luma.0 * luma[k] + of_chroma[k] + self.added)
     }
 }
 
@@ -58,19 +61,27 @@ impl Colours {
     /// Of the part of a frame in which the nail's box, and a quarter more, lies; `None` where that is off the picture.
     pub(in crate::nailvideo) fn new(frame: &Frame<'_>, planes: Planes, frame_from_nail: &Affine) -> Option<Self> {
         let luma = samples(frame.luma, planes.turn.quarters());
-        let corners = [[-1.3, -1.3], [1.3, -1.3], [1.3, 1.3], [-1.3, 1.3]].map(|corner| frame_from_nail.of(corner));
+        let corners = [[-NEAR, -NEAR], [NEAR, -NEAR], [NEAR, NEAR], [-NEAR, NEAR]];
+        let corners = corners.map(|corner| frame_from_nail.of(corner));
         let part = Part::about(&corners, 2.0, shown_size(&luma))?;
         // Chroma blocks begin on even pixels.
         let from = part.from.map(|at| at & !3);
         let size = std::array::from_fn(|k| part.size[k] + part.from[k] - from[k]);
-        Some(Self::of_part(frame, planes, Part { from, size }))
+        let colours = Self::of_part(frame, planes, Part { from, size });
+        Some(Self { holds_near: colours.holds(corners), ..colours })
     }
 
     /// Of a part of a frame.
     pub(in crate::nailvideo) fn of_part(frame: &Frame<'_>, planes: Planes, part: Part) -> Self {
         let Planes { turn, matrix, site } = planes;
         let luma = Grid::of_luma(&samples(frame.luma, turn.quarters()), part, 1);
-        Self { luma, chroma: Grid::of_chroma(frame, turn, site, part), matrix }
+        Self { luma, chroma: Grid::of_chroma(frame, turn, site, part), matrix, holds_near: false }
+    }
+
+    /// Whether [`Grid::lanes`] may be asked for all points between these corners.
+    fn holds(&self, corners: [[f64; 2]; 4]) -> bool {
+        let corners = corners.map(|corner| corner.map(|at| at as f32));
+        self.luma.holds(&corners) && self.chroma.iter().flatten().all(|grid| grid.holds(&corners))
     }
 
     /// Red, green and blue of a point, fraction of ordinary video's full scale; all luma in a grey video; NaN off the
@@ -81,13 +92,11 @@ impl Colours {
 
     /// Red, green or blue alone, for points between these corners; `None` where some lie too near the picture's border.
     pub(in crate::nailvideo) fn channel(&self, channel: usize, corners: [[f64; 2]; 4]) -> Option<Channel<'_>> {
-        let corners = corners.map(|corner| corner.map(|at| at as f32));
-        let holds = self.luma.holds(&corners) && self.chroma.iter().flatten().all(|grid| grid.holds(&corners));
         let of = |samples: [f64; 3]| self.rgb(samples)[channel];
         let none = of([0.0; 3]);
         let [luma, cb, cr] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|one| (of(one) - none) as f32);
         let added = none as f32;
-        holds.then(|| Channel {
+        self.holds(corners).then(|| Channel {
             luma: (luma, &self.luma),
             chroma: match &self.chroma {
                 Some([of_cb, of_cr]) => Ok(of_cb.combined([cb, cr], of_cr)),
@@ -108,14 +117,18 @@ impl Colours {
 
     /// The mean over a group's points.
     pub(in crate::nailvideo) fn mean(&self, group: &Group, frame_from_nail: &Affine) -> [f64; 3] {
-        let [a, b, c, d, e, f] = frame_from_nail.0.map(|part| part as f32);
-        let mut sum = [0.0_f32; 3];
-        for &[u, v] in &group.points {
-            let (u, v) = (u as f32, v as f32);
-            let one = self.samples([a * u + b * v + c, d * u + e * v + f]);
-            sum.iter_mut().zip(one).for_each(|(sum, part)| *sum += part);
-        }
-        self.rgb(sum.map(|sum| f64::from(sum) / group.points.len() as f64))
+        let (points, motion) = (group.points(), frame_from_nail.0.map(|part| part as f32));
+        let sum = if self.holds_near && group.is_near() {
+            Arch::new().dispatch(Sum { colours: self, points, motion })
+        } else {
+            let mut sum = [0.0_f32; 3];
+            for &[u, v] in points {
+                let one = self.samples(moved(motion, [u as f32, v as f32]));
+                sum.iter_mut().zip(one).for_each(|(sum, part)| *sum += part);
+            }
+            sum
+        };
+        self.rgb(sum.map(|sum| f64::from(sum) / points.len() as f64))
     }
 
     #[inline]
@@ -130,5 +143,49 @@ impl Colours {
     /// Linear in the samples, so that the mean's colour is the colours' mean.
     fn rgb(&self, samples: [f64; 3]) -> [f64; 3] {
         self.matrix.to_own_rgb(samples)
+    }
+}
+
+#[inline(always)]
+fn moved([a, b, c, d, e, f]: [f32; 6], [u, v]: [f32; 2]) -> [f32; 2] {
+    [a * u + b * v + c, d * u + e * v + f]
+}
+
+/// The sum of luma, Cb and Cr over points for which [`Grid::lanes`] may be asked.
+struct Sum<'a> {
+    colours: &'a Colours,
+    points: &'a [[f64; 2]],
+    motion: [f32; 6],
+}
+
+impl NullaryFnOnce for Sum<'_> {
+    type Output = [f32; 3];
+
+    #[inline(always)]
+    fn call(self) -> [f32; 3] {
+        let Self { colours, points, motion } = self;
+        let [mut luma, mut cb, mut cr] = [[0.0; LANES]; 3];
+        for points in points.chunks(LANES) {
+            // The last ones may be fewer: the first of them is there as often as one is missing.
+            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+            for k in 0..LANES {
+                let [u, v] = points[if k < points.len() { k } else { 0 }];
+                [x[k], y[k]] = moved(motion, [u as f32, v as f32]);
+            }
+            let add = |sum: &mut [f32; LANES], values: [f32; LANES]| {
+                for k in 0..LANES {
+                    sum[k] += if k < points.len() { values[k] } else { 0.0 };
+                }
+            };
+            add(&mut luma, colours.luma.lanes(x, y));
+            match &colours.chroma {
+                Some(grids) => {
+                    add(&mut cb, grids[0].lanes(x, y));
+                    add(&mut cr, grids[1].lanes(x, y));
+                }
+                None => [&mut cb, &mut cr].into_iter().for_each(|sum| add(sum, [128.0; LANES])),
+            }
+        }
+        [luma, cb, cr].map(|lanes| lanes.iter().sum())
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn box_cells() -> Vec<Group> {
         let [x, y] = [k % POINTS, k / POINTS].map(|n| side * ((2 * n + 1) as f64 / (2 * POINTS) as f64 - 0.5));
         [u + x, v + y]
     };
-    (0..CELLS * CELLS).map(|cell| Group { points: (0..POINTS * POINTS).map(|k| point(cell, k)).collect() }).collect()
+    (0..CELLS * CELLS).map(|cell| Group::new((0..POINTS * POINTS).map(|k| point(cell, k)).collect())).collect()
 }
 
 /// What is covered by something that has this rim; `changes` are those of the box' cells.
@@ -43,5 +43,5 @@ pub(super) fn covered_by<'a>(
 
 /// How many points of a group are covered.
 pub(super) fn points_covered(covered: &Covered, group: &Group) -> usize {
-    group.points.iter().filter(|&&point| covered[cell_at(point)]).count()
+    group.points().iter().filter(|&&point| covered[cell_at(point)]).count()
 }

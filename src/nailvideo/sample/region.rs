@@ -13,11 +13,31 @@ const GROUPS_PER_MM: f64 = 2.0;
 /// A side of the maps and cells, of the nail's box (section 4.2.2).
 pub(in crate::nailvideo) const MARGIN: f64 = 1.25;
 
+/// Points within so many half widths and half lengths of the nail's middle are near.
+pub(super) const NEAR: f64 = 1.3;
+
 /// Points that are judged together.
 #[derive(Debug, Clone)]
 pub(in crate::nailvideo) struct Group {
+    points: Vec<[f64; 2]>,
+    is_near: bool,
+}
+
+impl Group {
+    pub(super) fn new(points: Vec<[f64; 2]>) -> Self {
+        let is_near = points.as_flattened().iter().all(|part| part.abs() <= NEAR);
+        Self { points, is_near }
+    }
+
     /// In half widths and half lengths.
-    pub(in crate::nailvideo) points: Vec<[f64; 2]>,
+    pub(super) fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// Whether all of them are near.
+    pub(super) fn is_near(&self) -> bool {
+        self.is_near
+    }
 }
 
 /// A place that is averaged over.
@@ -29,7 +49,7 @@ pub(in crate::nailvideo) struct Region {
 impl Region {
     /// From its first point to its last, in half widths.
     pub(in crate::nailvideo) fn width(&self) -> f64 {
-        let across = self.groups.iter().flat_map(|group| &group.points).map(|[u, _]| *u);
+        let across = self.groups.iter().flat_map(Group::points).map(|[u, _]| *u);
         across.clone().fold(f64::NEG_INFINITY, f64::max) - across.fold(f64::INFINITY, f64::min)
     }
 }
@@ -54,16 +74,15 @@ fn discs_at(positions: &Positions, [width, length]: [f64; 2], places: impl Itera
     let sides = ((positions.diameter_mm * GROUPS_PER_MM).round() as usize).clamp(2, 16);
     let across = sides * POINTS;
     let disc = |at: [f64; 2]| {
-        let mut groups = vec![Group { points: Vec::new() }; sides * sides];
+        let mut groups = vec![Vec::new(); sides * sides];
         for k in 0..across * across {
             let [x, y] = [k % across, k / across];
             let [p, q] = [x, y].map(|n| (2 * n + 1) as f64 / across as f64 - 1.0);
             if p * p + q * q <= 1.0 {
-                groups[y / POINTS * sides + x / POINTS].points.push([at[0] + ru * p, at[1] + rv * q]);
+                groups[y / POINTS * sides + x / POINTS].push([at[0] + ru * p, at[1] + rv * q]);
             }
         }
-        groups.retain(|group| !group.points.is_empty());
-        groups
+        groups.into_iter().filter(|points| !points.is_empty()).map(Group::new).collect()
     };
     places.map(|at| Region { groups: disc(at) }).collect()
 }
@@ -82,7 +101,7 @@ pub(in crate::nailvideo) fn cells(n: usize, outline: &Outline, frame_from_nail: 
             [corner[0] + x, corner[1] - y]
         });
         let inside = outline.polygon().contains(&geo::Point::new(x, y));
-        let groups = vec![Group { points: points.collect() }];
+        let groups = vec![Group::new(points.collect())];
         inside.then_some(Region { groups })
     };
     (0..n * n).map(cell).collect()
@@ -101,11 +120,11 @@ pub(in crate::nailvideo) fn light_cells() -> Vec<Group> {
         let [x, y] = [k % SIDE, k / SIDE].map(place);
         [x + 0.1 * ((p % 2) as f64 - 0.5), y + 0.1 * ((p / 2) as f64 - 0.5)]
     };
-    (0..SIDE * SIDE).map(|k| Group { points: (0..4).map(|p| point(k, p)).collect() }).collect()
+    (0..SIDE * SIDE).map(|k| Group::new((0..4).map(|p| point(k, p)).collect())).collect()
 }
 
 /// Skin on both sides of the nail.
 pub(in crate::nailvideo) fn skin() -> Group {
     let side = |u: f64| (0..24).map(move |k| [u, f64::from(k) / 15.0 - 0.8]);
-    Group { points: [-1.2, -1.15, 1.15, 1.2].into_iter().flat_map(side).collect() }
+    Group::new([-1.2, -1.15, 1.15, 1.2].into_iter().flat_map(side).collect())
 }

@@ -6,7 +6,7 @@
 
 use image::DynamicImage;
 
-use crate::vision::{Cell, halved};
+use crate::vision::{Cell, reduced};
 
 /// ln(green + floor).
 pub(super) const TONE: usize = 0;
@@ -140,8 +140,8 @@ impl Picture {
     }
 
     fn halved(&self) -> Self {
-        let cells = halved(&self.cells, self.size);
-        Self { size: self.size.map(|s| s / 2), cells, colour: self.colour, step: 2.0 * self.step }
+        let (cells, size) = reduced(&self.cells, self.size, 2);
+        Self { size, cells, colour: self.colour, step: 2.0 * self.step }
     }
 
     /// Working to source pixels.
