@@ -5,6 +5,8 @@ use crate::vision::{Samples, reduced};
 
 /// So many points at once: as many as most machines' vectors hold.
 pub(in crate::nailvideo) const LANES: usize = 8;
+/// Points of a run.
+pub(in crate::nailvideo) const RUN: usize = 64;
 
 /// Values at the middles of equal blocks of pixels.
 #[derive(Debug, Clone)]
@@ -125,7 +127,7 @@ impl Grid {
         above + q * (below - above)
     }
 
-    /// Whether [`Self::lanes`] may be asked for all points between these corners.
+    /// Whether [`Self::many`] may be asked for all points between these corners.
     pub(in crate::nailvideo) fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
         corners.iter().all(|at| {
             [0, 1].into_iter().all(|axis| {
@@ -140,26 +142,26 @@ impl Grid {
     /// [`Self::at`] of points that lie within the middles of the outermost blocks; to be compiled for whatever vectors
     /// its caller is.
     #[inline(always)]
-    pub(in crate::nailvideo) fn lanes(&self, x: [f32; LANES], y: [f32; LANES]) -> [f32; LANES] {
+    pub(in crate::nailvideo) fn many<const N: usize>(&self, x: &[f32; N], y: &[f32; N]) -> [f32; N] {
         let columns = self.size[0];
-        let (mut p, mut q) = ([0.0; LANES], [0.0; LANES]);
-        let mut first = [0_u32; LANES];
-        for k in 0..LANES {
+        let (mut p, mut q) = ([0.0; N], [0.0; N]);
+        let mut first = [0_u32; N];
+        for k in 0..N {
             let (u, v) = ((x[k] - self.origin[0]) * self.per_px[0], (y[k] - self.origin[1]) * self.per_px[1]);
             let ((left, over_left), (top, over_top)) = (whole_and_part(u), whole_and_part(v));
             first[k] = top.wrapping_mul(columns as u32).wrapping_add(left);
             (p[k], q[k]) = (over_left, over_top);
         }
-        let mut corners = [[0.0; LANES]; 4];
-        for k in 0..LANES {
+        let (mut above, mut below) = ([[0.0; 2]; N], [[0.0; 2]; N]);
+        for k in 0..N {
             let block = &self.values[first[k] as usize..][..columns + 2];
-            [corners[0][k], corners[1][k]] = [block[0], block[1]];
-            [corners[2][k], corners[3][k]] = [block[columns], block[columns + 1]];
+            above[k] = [block[0], block[1]];
+            below[k] = [block[columns], block[columns + 1]];
         }
-        let mut values = [0.0; LANES];
-        for k in 0..LANES {
-            let above = corners[0][k] + p[k] * (corners[1][k] - corners[0][k]);
-            let below = corners[2][k] + p[k] * (corners[3][k] - corners[2][k]);
+        let mut values = [0.0; N];
+        for k in 0..N {
+            let above = above[k][0] + p[k] * (above[k][1] - above[k][0]);
+            let below = below[k][0] + p[k] * (below[k][1] - below[k][0]);
             values[k] = above + q[k] * (below - above);
         }
         values
@@ -205,7 +207,7 @@ mod tests {
             if turn == Turn::Quarter {
                 (x, y) = (y, x);
             }
-            assert_eq!(grid.lanes(x, y), std::array::from_fn(|k| grid.at(x[k], y[k])));
+            assert_eq!(grid.many(&x, &y), std::array::from_fn(|k| grid.at(x[k], y[k])));
             assert!(grid.holds(&[[2.0, 2.0]; 4]) && !grid.holds(&[[2.0, 2.0], [2.0, 40.0], [2.0; 2], [2.0; 2]]));
             assert!(grid.at(-1.5, 3.0).is_nan() && grid.at(3.0, 40.0).is_nan());
         }

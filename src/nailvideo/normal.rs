@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::affine::Affine;
 use super::follow::{Covered, cell_at};
-use super::grid::LANES;
+use super::grid::RUN;
 use super::options::Window;
 use super::sample::{Channel, Colours, MARGIN};
 
@@ -56,14 +56,14 @@ impl NullaryFnOnce for Row<'_> {
         let first = self.first.map(|at| at as f32);
         let by: [f32; 2] = std::array::from_fn(|axis| (self.second[axis] - self.first[axis]) as f32);
         let last = self.values.len() - 1;
-        for (chunk, values) in self.values.chunks_mut(LANES).enumerate() {
-            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
-            for k in 0..LANES {
-                let column = (LANES * chunk + k).min(last) as f32;
+        for (chunk, values) in self.values.chunks_mut(RUN).enumerate() {
+            let (mut x, mut y) = ([0.0; RUN], [0.0; RUN]);
+            for k in 0..RUN {
+                let column = (RUN * chunk + k).min(last) as f32;
                 (x[k], y[k]) = (first[0] + column * by[0], first[1] + column * by[1]);
             }
-            let lanes = self.channel.lanes(x, y);
-            values.copy_from_slice(&lanes[..values.len()]);
+            let seen = self.channel.many(&x, &y);
+            values.copy_from_slice(&seen[..values.len()]);
         }
     }
 }

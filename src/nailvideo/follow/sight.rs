@@ -8,7 +8,7 @@
 use pulp::{Arch, NullaryFnOnce};
 
 use crate::nailvideo::affine::Affine;
-use crate::nailvideo::grid::{Grid, LANES, Part};
+use crate::nailvideo::grid::{Grid, Part, RUN};
 use crate::vision::{Samples, smoothed};
 
 /// Blur, of the nail's width, and at least (measured on the phantom: 1/16 is pulled 0.18 px along a pressed nail of 190
@@ -102,28 +102,28 @@ impl NullaryFnOnce for Each<'_> {
         let Self { sight, motion, x, y, values } = self;
         let ((xs, x_rest), (ys, y_rest)) = (x.as_chunks(), y.as_chunks());
         let (values, rest) = values.as_chunks_mut();
-        for ((values, &x), &y) in values.iter_mut().zip(xs).zip(ys) {
-            *values = lanes(sight, motion, x, y);
+        for ((values, x), y) in values.iter_mut().zip(xs).zip(ys) {
+            *values = many(sight, motion, x, y);
         }
         if let (Some(&x), Some(&y)) = (x_rest.first(), y_rest.first()) {
             // The last ones may be fewer: the first of them is there as often as one is missing.
-            let (mut x, mut y) = ([x; LANES], [y; LANES]);
+            let (mut x, mut y) = ([x; RUN], [y; RUN]);
             x[..x_rest.len()].copy_from_slice(x_rest);
             y[..y_rest.len()].copy_from_slice(y_rest);
-            rest.copy_from_slice(&lanes(sight, motion, x, y)[..rest.len()]);
+            rest.copy_from_slice(&many(sight, motion, &x, &y)[..rest.len()]);
         }
     }
 }
 
 #[inline(always)]
-fn lanes(sight: &Sight, [a, b, c, d, e, f]: [f32; 6], x: [f32; LANES], y: [f32; LANES]) -> [f32; LANES] {
-    let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
-    for k in 0..LANES {
+fn many(sight: &Sight, [a, b, c, d, e, f]: [f32; 6], x: &[f32; RUN], y: &[f32; RUN]) -> [f32; RUN] {
+    let (mut u, mut v) = ([0.0; RUN], [0.0; RUN]);
+    for k in 0..RUN {
         u[k] = a * x[k] + b * y[k] + c;
         v[k] = d * x[k] + e * y[k] + f;
     }
-    let (mut values, low) = (sight.luma.lanes(u, v), sight.low.lanes(u, v));
-    for k in 0..LANES {
+    let (mut values, low) = (sight.luma.many(&u, &v), sight.low.many(&u, &v));
+    for k in 0..RUN {
         values[k] = (values[k] - low[k]) / (low[k] + DARK);
     }
     values

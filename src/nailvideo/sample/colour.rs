@@ -31,7 +31,7 @@ pub(in crate::nailvideo) struct Colours {
     luma: Grid,
     chroma: Option<[Grid; 2]>,
     matrix: Matrix,
-    /// Whether [`Grid::lanes`] may be asked for all points that are near.
+    /// Whether [`Grid::many`] may be asked for all points that are near.
     holds_near: bool,
 }
 
@@ -47,12 +47,12 @@ pub(in crate::nailvideo) struct Channel<'a> {
 impl Channel<'_> {
     /// Of some points: one of [`Colours::at`]; to be compiled for whatever vectors its caller is.
     #[inline(always)]
-    pub(in crate::nailvideo) fn lanes(&self, x: [f32; LANES], y: [f32; LANES]) -> [f32; LANES] {
+    pub(in crate::nailvideo) fn many<const N: usize>(&self, x: &[f32; N], y: &[f32; N]) -> [f32; N] {
         let of_chroma = match &self.chroma {
-            Ok(grid) => grid.lanes(x, y),
-            Err(everywhere) => [*everywhere; LANES],
+            Ok(grid) => grid.many(x, y),
+            Err(everywhere) => [*everywhere; N],
         };
-        let luma = self.luma.1.lanes(x, y);
+        let luma = self.luma.1.many(x, y);
         std::array::from_fn(|k| self.luma.0 * luma[k] + of_chroma[k] + self.added)
     }
 }
@@ -78,7 +78,7 @@ impl Colours {
         Self { luma, chroma: Grid::of_chroma(frame, turn, site, part), matrix, holds_near: false }
     }
 
-    /// Whether [`Grid::lanes`] may be asked for all points between these corners.
+    /// Whether [`Grid::many`] may be asked for all points between these corners.
     fn holds(&self, corners: [[f64; 2]; 4]) -> bool {
         let corners = corners.map(|corner| corner.map(|at| at as f32));
         self.luma.holds(&corners) && self.chroma.iter().flatten().all(|grid| grid.holds(&corners))
@@ -151,7 +151,7 @@ fn moved([a, b, c, d, e, f]: [f32; 6], [u, v]: [f32; 2]) -> [f32; 2] {
     [a * u + b * v + c, d * u + e * v + f]
 }
 
-/// The sum of luma, Cb and Cr over points for which [`Grid::lanes`] may be asked.
+/// The sum of luma, Cb and Cr over points for which [`Grid::many`] may be asked.
 struct Sum<'a> {
     colours: &'a Colours,
     points: &'a [[f64; 2]],
@@ -177,11 +177,11 @@ impl NullaryFnOnce for Sum<'_> {
                     sum[k] += if k < points.len() { values[k] } else { 0.0 };
                 }
             };
-            add(&mut luma, colours.luma.lanes(x, y));
+            add(&mut luma, colours.luma.many(&x, &y));
             match &colours.chroma {
                 Some(grids) => {
-                    add(&mut cb, grids[0].lanes(x, y));
-                    add(&mut cr, grids[1].lanes(x, y));
+                    add(&mut cb, grids[0].many(&x, &y));
+                    add(&mut cr, grids[1].many(&x, &y));
                 }
                 None => [&mut cb, &mut cr].into_iter().for_each(|sum| add(sum, [128.0; LANES])),
             }

@@ -3,14 +3,23 @@
 //! Either way they are the same events in the same order: where following a frame takes as long as decoding it, a job
 //! takes half of the time with the second thread.
 
+use std::ops::RangeInclusive;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::video::read::reader::{Alarm, Event, Reader};
 
-/// Frames that may wait; of 640x480 they take 2 MB, of 4K 50 MB.
-const MOST_WAITING: usize = 4;
+/// Frames that may wait take so many bytes, and are so many: as many as are decoded while a job begins with the first
+/// one, and of 4K not less than 4.
+const WAITING_BYTES: usize = 50 << 20;
+const WAITING: RangeInclusive<usize> = 4..=64;
+
+/// How many frames of so many pixels may wait.
+pub(in crate::video) fn most_waiting(pixels: usize) -> usize {
+    // A pixel of 4:2:0 of 8 bits takes 1.5 bytes.
+    (WAITING_BYTES / (pixels + pixels / 2).max(1)).clamp(*WAITING.start(), *WAITING.end())
+}
 
 /// What a reader has said.
 pub(in crate::video) struct Told {
@@ -37,12 +46,12 @@ pub(in crate::video) struct Ahead {
 }
 
 impl Events {
-    /// Events of `reader`, ahead of whoever asks where that is wanted.
-    pub(in crate::video) fn of(reader: Box<Reader>, ahead: bool) -> Self {
-        if !ahead {
+    /// Events of `reader`, so many of them ahead of whoever asks.
+    pub(in crate::video) fn of(reader: Box<Reader>, ahead: usize) -> Self {
+        if ahead == 0 {
             return Self::Here(reader);
         }
-        let (to, from) = sync_channel(MOST_WAITING);
+        let (to, from) = sync_channel(ahead);
         let thread = std::thread::spawn(move || {
             let mut reader = reader;
             loop {

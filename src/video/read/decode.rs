@@ -23,7 +23,7 @@ use crate::video::colour::convert;
 use crate::video::colour::hdr::ToOrdinary;
 use crate::video::info::info;
 use crate::video::quantizer;
-use crate::video::read::ahead::{Events, Told};
+use crate::video::read::ahead::{Events, Told, most_waiting};
 use crate::video::read::reader::{Alarm, Event, Reader};
 use crate::video::read::source::Care;
 use crate::video::{Frame, Info, Matrix, VideoError};
@@ -75,8 +75,8 @@ pub struct Video {
     threads: usize,
     /// None while it is handed over.
     events: Option<Events>,
-    /// Whether another thread decodes, and how long decoding took.
-    is_ahead: bool,
+    /// How many frames ahead another thread decodes, and how long decoding took.
+    frames_ahead: usize,
     decoding: Duration,
     /// Events read ahead, to know the first frame.
     ahead: VecDeque<Event>,
@@ -141,8 +141,8 @@ impl Video {
         Ok(Self {
             path: path.to_owned(),
             threads,
-            events: Some(Events::of(Box::new(reader), false)),
-            is_ahead: false,
+            events: Some(Events::of(Box::new(reader), 0)),
+            frames_ahead: 0,
             decoding: Duration::ZERO,
             ahead,
             known: 0,
@@ -162,8 +162,9 @@ impl Video {
     /// From here on a thread of its own decodes some frames ahead; what comes out is the same.
     pub fn decode_ahead(&mut self) {
         if let Some(Events::Here(reader)) = self.events.take_if(|events| matches!(events, Events::Here(_))) {
-            self.is_ahead = true;
-            self.events = Some(Events::of(reader, true));
+            let (width, height, _) = self.layout;
+            self.frames_ahead = most_waiting(width as usize * height as usize);
+            self.events = Some(Events::of(reader, self.frames_ahead));
         }
     }
 
@@ -249,7 +250,7 @@ impl Video {
                 }
                 Err(Alarm) => {
                     let reader = Reader::open(&self.path, self.threads, Care::Exact)?;
-                    self.events = Some(Events::of(Box::new(reader), self.is_ahead));
+                    self.events = Some(Events::of(Box::new(reader), self.frames_ahead));
                     self.known = self.next_index;
                 }
             }
