@@ -50,6 +50,12 @@ impl Affine {
     }
 }
 
+/// [`Affine::of`] in single precision, for many points.
+#[inline(always)]
+pub(in crate::nailvideo) fn moved([a, b, c, d, e, f]: [f32; 6], [x, y]: [f32; 2]) -> [f32; 2] {
+    [a * x + b * y + c, d * x + e * y + f]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

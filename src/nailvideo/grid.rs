@@ -3,9 +3,10 @@
 use crate::video::{Frame, Plane, Turn};
 use crate::vision::{Samples, reduced};
 
-/// So many points at once: as many as most machines' vectors hold.
+/// Numbers in the vectors of most machines.
 pub(in crate::nailvideo) const LANES: usize = 8;
-/// Points of a run.
+/// Points that are looked up at once: first where they all lie, then what is there, so that all but the look-up itself
+/// is done by vectors.
 pub(in crate::nailvideo) const RUN: usize = 64;
 
 /// Values at the middles of equal blocks of pixels.
@@ -139,8 +140,8 @@ impl Grid {
         })
     }
 
-    /// [`Self::at`] of points that lie within the middles of the outermost blocks; to be compiled for whatever vectors
-    /// its caller is.
+    /// [`Self::at`] of points that lie within the middles of the outermost blocks; compiled for the vectors that its
+    /// caller is compiled for.
     #[inline(always)]
     pub(in crate::nailvideo) fn many<const N: usize>(&self, x: &[f32; N], y: &[f32; N]) -> [f32; N] {
         let columns = self.size[0];
@@ -168,7 +169,7 @@ impl Grid {
     }
 }
 
-/// A place above 0 and below 2^22 as blocks and what is over, 0 to 1: as additions, since the compiler makes no vectors of
+/// A place from 0 to 2^22 as whole blocks and the rest, 0 to 1: by additions, as the compiler makes no vectors of
 /// conversions that saturate.
 #[inline(always)]
 fn whole_and_part(at: f32) -> (u32, f32) {

@@ -19,9 +19,9 @@ use crate::nailvideo::grid::LANES;
 
 /// The motion's parameters, gain and offset.
 const UNKNOWNS: usize = MOTION + 2;
-/// Steps at most, and the step after which none follows, pixels at the nail's edge (measured; with 30 steps, or with
-/// first ones that keep the nail's shape, 6 and more frames of 30,766 showed another person's nail, or the nail where
-/// it is not).
+/// Steps at most, and the step after which none follows, pixels at the nail's edge, blocks of a coarser template
+/// (measured; with 30 steps, or with first ones that keep the nail's shape, 6 and more frames of 30,766 showed another
+/// person's nail, or the nail where it is not).
 const MOST_STEPS: usize = 12;
 const LAST_STEP_PX: f64 = 0.02;
 /// A step of more than this share of the one before is the last as well: what moves the nail then are its own weights,
@@ -89,7 +89,7 @@ pub(super) struct Scratch {
 
 /// Fits the template's motion to a frame, from `start` on; `None` where it leads nowhere.
 pub(super) fn register(template: &Template, sight: &Sight, start: Affine, scratch: &mut Scratch) -> Option<Fit> {
-    fit(template, sight, start, None, scratch)
+    fit(template, sight, start, LAST_STEP_PX * template.step, None, scratch)
 }
 
 /// The same, and whether something lies over the nail; by what is bare alone where that is asked for.
@@ -103,10 +103,10 @@ pub(super) fn register_fine(
     let rim = |fit: &Fit, scratch: &Scratch| {
         Rim::of(template, sight, (&fit.motion, fit.gain, fit.offset), &scratch.residuals)
     };
-    let whole = register(template, sight, start, scratch)?;
+    let whole = fit(template, sight, start, LAST_STEP_PX, None, scratch)?;
     let seen = rim(&whole, scratch);
     let Some(first) = seen.filter(|_| by_bare) else { return Some(Fit { rim: seen, ..whole }) };
-    let bare = fit(template, sight, whole.motion, Some(&first.covered()), scratch)?;
+    let bare = fit(template, sight, whole.motion, LAST_STEP_PX, Some(&first.covered()), scratch)?;
     Some(Fit { rim: rim(&bare, scratch).or(Some(first)), ..bare })
 }
 
@@ -114,6 +114,7 @@ fn fit(
     template: &Template,
     sight: &Sight,
     start: Affine,
+    rest_px: f64,
     covered: Option<&Covered>,
     scratch: &mut Scratch,
 ) -> Option<Fit> {
@@ -140,7 +141,7 @@ fn fit(
             continue;
         }
         let creeps = step_px > CREEPING * before_px && step_px <= MOST_LAST_STEP_PX;
-        if step_px < LAST_STEP_PX * template.step || creeps || k >= MOST_STEPS {
+        if step_px < rest_px || creeps || k >= MOST_STEPS {
             let inverse = normal.inverse();
             break (sd, inverse * pulls(pixels, &scratch.residuals, sd)? * inverse / (gain * gain), step_px);
         }

@@ -7,7 +7,7 @@
 
 use pulp::{Arch, NullaryFnOnce};
 
-use crate::nailvideo::affine::Affine;
+use crate::nailvideo::affine::{Affine, moved};
 use crate::nailvideo::grid::{Grid, Part, RUN};
 use crate::vision::{Samples, smoothed};
 
@@ -57,15 +57,14 @@ impl Sight {
     /// [`Self::at`] of each of these points once `motion` has moved them; all lie between these corners.
     pub(super) fn each(&self, motion: &Affine, corners: &[[f32; 2]; 4], [x, y]: [&[f32]; 2], values: &mut Vec<f32>) {
         let motion = motion.0.map(|part| part as f32);
-        let [a, b, c, d, e, f] = motion;
-        let moved = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
         values.clear();
-        let corners = corners.map(moved);
+        let corners = corners.map(|corner| moved(motion, corner));
         if self.luma.holds(&corners) && self.low.holds(&corners) {
             values.resize(x.len(), 0.0);
             Arch::new().dispatch(Each { sight: self, motion, x, y, values });
         } else {
-            values.extend(x.iter().zip(y).map(|(&x, &y)| moved([x, y])).map(|[x, y]| self.at(x, y)));
+            let places = x.iter().zip(y).map(|(&x, &y)| moved(motion, [x, y]));
+            values.extend(places.map(|[x, y]| self.at(x, y)));
         }
     }
 
@@ -116,11 +115,10 @@ impl NullaryFnOnce for Each<'_> {
 }
 
 #[inline(always)]
-fn many(sight: &Sight, [a, b, c, d, e, f]: [f32; 6], x: &[f32; RUN], y: &[f32; RUN]) -> [f32; RUN] {
+fn many(sight: &Sight, motion: [f32; 6], x: &[f32; RUN], y: &[f32; RUN]) -> [f32; RUN] {
     let (mut u, mut v) = ([0.0; RUN], [0.0; RUN]);
     for k in 0..RUN {
-        u[k] = a * x[k] + b * y[k] + c;
-        v[k] = d * x[k] + e * y[k] + f;
+        [u[k], v[k]] = moved(motion, [x[k], y[k]]);
     }
     let (mut values, low) = (sight.luma.many(&u, &v), sight.low.many(&u, &v));
     for k in 0..RUN {

@@ -3,7 +3,7 @@
 use pulp::{Arch, NullaryFnOnce};
 
 use super::region::{Group, NEAR};
-use crate::nailvideo::affine::Affine;
+use crate::nailvideo::affine::{Affine, moved};
 use crate::nailvideo::grid::{Grid, LANES, Part, samples, shown_size};
 use crate::video::{Frame, Info, Matrix, Turn};
 
@@ -45,7 +45,7 @@ pub(in crate::nailvideo) struct Channel<'a> {
 }
 
 impl Channel<'_> {
-    /// Of some points: one of [`Colours::at`]; to be compiled for whatever vectors its caller is.
+    /// Of points of which [`Grid::many`] may be asked: one of [`Colours::at`].
     #[inline(always)]
     pub(in crate::nailvideo) fn many<const N: usize>(&self, x: &[f32; N], y: &[f32; N]) -> [f32; N] {
         let of_chroma = match &self.chroma {
@@ -144,11 +144,6 @@ impl Colours {
     fn rgb(&self, samples: [f64; 3]) -> [f64; 3] {
         self.matrix.to_own_rgb(samples)
     }
-}
-
-#[inline(always)]
-fn moved([a, b, c, d, e, f]: [f32; 6], [u, v]: [f32; 2]) -> [f32; 2] {
-    [a * u + b * v + c, d * u + e * v + f]
 }
 
 /// The sum of luma, Cb and Cr over points for which [`Grid::many`] may be asked.
