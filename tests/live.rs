@@ -579,6 +579,13 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     contact("Fz_N>-0.01", "upside-down").says("presses begin when their contact is over: is contact the right way");
     write("late.csv", &|t_s, light, _| format!("{t_s},{light},{}\n", -pressing(t_s - 1.0)));
     judge(&dir, "late.csv", &[]).expect(0).says("9 of 9 contacts are missed and 10 of 10 presses are false");
+    judge(&dir, "good.csv", &["late.csv"]).expect(0).says("late.csv: 9 of 9 contacts are missed");
+    // Rows that the model can't answer.
+    dir.write("lit.csv", altered(20.0, "time_s,led,P1,Fz_N", |t_s, light, force| format!("{t_s},1,{light},{force}\n")));
+    judge(&dir, "lit.csv", &[]).expect(2).says("lit.csv: none of its 2000 rows has a prediction");
+    let light = |t_s: f64, light: f64| if t_s < 5.0 { light.to_string() } else { String::new() };
+    write("half.csv", &|t_s, seen, force| format!("{t_s},{},{force}\n", light(t_s, seen)));
+    judge(&dir, "half.csv", &[]).expect(0).says("half.csv: 1500 of 2000 rows have no prediction");
     // Two of ten presses are in 4 s of which nothing is known; known in every other row is never known.
     let where_known = |t_s: f64, light: f64, force: f64, known: bool| {
         if known { format!("{t_s},{light},{force}\n") } else { format!("{t_s},{light},\n") }

@@ -136,6 +136,22 @@ fn faults_name_file_line_and_column_and_nothing_starts() {
 }
 
 #[test]
+fn a_marker_file_of_each_subject_is_that_of_all_their_videos() {
+    let dir = Dir::new();
+    for subject in ["s01", "s02"] {
+        for (from, to) in [("video.mp4", "video_1.mp4"), ("video.mp4", "video_2.mp4"), ("markers.toml", "markers.toml")]
+        {
+            let from = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/finger/").to_owned() + from;
+            dir.write(&format!("lab/{subject}/{to}"), fs::read(from).expect("a fixture"));
+        }
+    }
+    dir.lunula(&["init", "lab"]).expect(0);
+    let text = fs::read_to_string(dir.path("lab/pipeline.toml")).unwrap();
+    assert!(text.contains("{subject}/{session}.mp4") && text.contains("{subject}/markers.toml"), "{text}");
+    dir.lunula(&["run", "lab/pipeline.toml", "--plan"]).expect(0);
+}
+
+#[test]
 fn what_init_writes_runs_as_it_stands_and_is_never_overwritten() {
     let dir = Dir::new();
     for (name, seed) in [("S01", "1"), ("S02", "2")] {

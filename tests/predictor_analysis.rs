@@ -156,6 +156,11 @@ fn every_subset_is_compared_and_the_best_of_each_size_reported() {
     let none = (predicted.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 100.0).sqrt();
     near(&by_name(&report["none"], &["Fz_N"]), &[none], 1e-12);
 
+    // Of another sensor, whose photodiodes come in another order, no subset says anything.
+    assert!(!report["warnings"].to_string().contains("as large as with none"), "{}", report["warnings"]);
+    dir.write("order.csv", dir.text("b.csv").replacen("P1,P2,P3,P4", "P4,P3,P2,P1", 1));
+    let other = ["prune", "a.csv", "--validate", "order.csv", "--target", "Fz_N"];
+    dir.lunula(&other).expect(0).says("the errors with all photodiodes are as large as with none of them: Fz_N (");
     // Each subset's figures are those of a model trained on it.
     let rows = dir.table("pr/subsets.csv");
     assert_eq!(rows.len(), 15);

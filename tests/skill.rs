@@ -250,6 +250,13 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     let slow: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![1000.0 * row[0], row[1]]).collect();
     dir.write("ms.csv", csv("time_s,Fz_N", &slow));
     run(&dir, "ms.csv --out t").expect(0).says("ms.csv: rows are 10 s apart");
+    // A decimal point that was lost, and a transducer at the end of its range.
+    let lost = |row: Vec<f64>| vec![row[0], if row[0] == 1.5 { 1e4 * row[1] - 1e3 } else { row[1] }];
+    dir.write("lost.csv", csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]).into_iter().map(lost).collect::<Vec<_>>()));
+    run(&dir, "lost.csv --out t").expect(0).says("finger: Fz_N is -").says("far beyond all others");
+    let clipped = |row: Vec<f64>| vec![row[0], row[1].max(-0.7)];
+    dir.write("end.csv", csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]).into_iter().map(clipped).collect::<Vec<_>>()));
+    run(&dir, "end.csv --out t").expect(0).says("finger: Fz_N stays at exactly -0.7, its least value");
     dir.write("again.csv", csv("time_s,Fz_N", &up));
     run(&dir, "up.csv again.csv --out t")
         .expect(0)

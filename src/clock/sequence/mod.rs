@@ -223,7 +223,7 @@ pub fn fit(
         screen: screen.known,
         screen_delay_s: screen.estimate_s,
         screen_delay_most_s: screen.most_s,
-        doubt: screen.doubt,
+        doubt: screen.doubt.or_else(|| refused_at_an_end(&agreed)),
         place,
         corners,
     })
@@ -240,6 +240,24 @@ fn most_agreed(seen: &[Seen], resolution_s: f64, usual_s: f64, wraps_s: &[f64]) 
     }
     let slow = with(SLOWEST_SCREEN_S);
     if late && slow.count > usual.count || 10 * slow.count > 10 * usual.count + seen.len() { slow } else { usual }
+}
+
+/// So many readings in a row at the beginning or the end that don't agree are no misread digit (measured: 0 in all
+/// videos of clocks that run; 30 to 88 where a clock of whole seconds is set within 3 s of an end).
+const AT_AN_END: usize = 5;
+
+/// That the first or the last readings don't agree with the others: the clock may have been set there.
+fn refused_at_an_end(agreed: &Agreed) -> Option<String> {
+    let refused = |turns: &&Option<f64>| turns.is_none();
+    let first = agreed.turns_s.iter().take_while(refused).count();
+    let last = agreed.turns_s.iter().rev().take_while(refused).count();
+    let (count, which) = if first >= last { (first, "first") } else { (last, "last") };
+    (count >= AT_AN_END).then(|| {
+        format!(
+            "the {which} {count} readings of the clock agree with none of the others: was it set, or did it stop, \
+             then? Their times are those of the others' clock; cut the video there"
+        )
+    })
 }
 
 /// Whether so many readings disagree, here and there, that a digit must be misread again and again: such a digit is

@@ -384,6 +384,26 @@ fn a_frozen_picture_of_a_running_clock_is_refused_not_the_clock() {
 }
 
 #[test]
+fn a_clock_of_whole_seconds_that_is_set_near_an_end_is_doubted() {
+    let times = regular(30.0, 20.0);
+    let film = Film { offset_s: 7100.4, resolution_s: 1.0, ..film() };
+    let right = film.read(&times);
+    let fitted = |shown: &[Option<f64>]| fit(&times, shown, 1.0, &[86_400.0], None).unwrap();
+    assert_eq!(fitted(&right).doubt, None);
+    for (set, by_s) in [(520..600, 5.0), (0..60, 3600.0), (560..600, -1800.0)] {
+        let shown: Vec<Option<f64>> =
+            right.iter().enumerate().map(|(k, s)| s.map(|s| if set.contains(&k) { s + by_s } else { s })).collect();
+        let doubt = fitted(&shown).doubt.expect("a doubt");
+        let which = if set.start == 0 { "first" } else { "last" };
+        assert!(doubt.starts_with(&format!("the {which} {} readings", set.len())), "{set:?}: {doubt}");
+    }
+    // A misread digit at the very end is none.
+    let mut misread = right.clone();
+    misread[597..].fill(Some(7000.0));
+    assert_eq!(fitted(&misread).doubt, None);
+}
+
+#[test]
 fn bounds_hold_the_clock_at_every_time() {
     let times = regular(29.97, 20.0);
     let film = film();

@@ -157,10 +157,11 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
         Some((name.clone(), Spread::of(bent())?, ends))
     };
     let fz_n: Vec<f64> = force_n.iter().map(|force_n| -force_n).collect();
+    let force = || std::iter::once((FORCE, &fz_n[..]));
     let time_s: Vec<f64> = own.iter().map(|row| rows.time_s[*row]).collect();
     FingerTrial {
         name: finger.name.clone(),
-        doubts: doubts::forces(std::iter::once((FORCE, &fz_n[..]))),
+        doubts: [doubts::forces(force()), doubts::glitches(force()), doubts::cut_off(FORCE, &fz_n)].concat(),
         angles: finger.angles.iter().filter_map(angle).collect(),
         force: Force { time_s, force_n, lifted },
     }

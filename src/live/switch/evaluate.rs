@@ -7,13 +7,13 @@
 use std::path::Path;
 use std::time::Instant;
 
-use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, Trace, any_contact, matches};
+use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
 use serde::Serialize;
 
 use super::figures::draw_delays;
 use super::flattery::flattery;
 use super::options::ContactOptions;
-use super::report::note;
+use super::report::{elsewhere, note};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -78,7 +78,7 @@ pub fn evaluate_switch(
     };
     note(&mut report, &all, inputs, options, led);
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
-    report.warnings.extend(elsewhere(&all, &traces, &found));
+    report.warnings.extend(elsewhere(&config, &read, &traces));
     if *rows {
         let at = staging.place("presses.csv")?;
         write_presses(&at, &out.join("presses.csv"), &read, &found)?;
@@ -95,32 +95,6 @@ pub fn evaluate_switch(
     }
     staging.commit()?;
     Ok(report)
-}
-
-/// A press that begins so long after its contact began, and after its end, is no press of it, seconds (assumed: blood
-/// follows within 0.4 s, 4.3).
-const LONG_S: f64 = 1.0;
-
-/// That what is called contact is not what the switch was pressed by.
-fn elsewhere(all: &Evaluation, traces: &[Trace], found: &[Vec<Match>]) -> Option<String> {
-    if let Err(why) = any_contact(traces) {
-        return Some(why.to_string());
-    }
-    let judged = all.decisions - all.not_judged;
-    if 2 * all.missed > all.presses && 2 * all.false_switches as usize > judged {
-        return Some(format!(
-            "{} of {} contacts are missed and {} of {judged} presses are false: is contact that of these recordings, \
-             on their clock, and the right way round?",
-            all.missed, all.presses, all.false_switches
-        ));
-    }
-    let own = || found.iter().flatten().filter(|one| one.fate == Fate::True);
-    let behind = |one: &&Match| {
-        one.contact.is_some_and(|contact| one.press_s >= contact.end_s && one.press_s > contact.start_s + LONG_S)
-    };
-    let (behind, own) = (own().filter(behind).count(), own().count());
-    (2 * behind > own)
-        .then(|| format!("{behind} of {own} presses begin when their contact is over: is contact the right way round?"))
 }
 
 /// A row for each press that is judged and each missed contact.

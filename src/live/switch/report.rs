@@ -1,6 +1,8 @@
 //! What the choice of a switch reports, and what any report on a switch says of its recordings.
 
-use lunula_live::switch::{Candidate, Evaluation, NoiseRate, SwitchConfig};
+use std::slice;
+
+use lunula_live::switch::{Candidate, Evaluation, Fate, Match, NoiseRate, SwitchConfig, Trace, any_contact, matches};
 use serde::Serialize;
 
 use super::options::ContactOptions;
@@ -86,4 +88,43 @@ pub(super) fn note<F: Serialize>(
     if !inputs.recordings.iter().any(|one| one.path.to_string_lossy().to_lowercase().contains(".xdf")) {
         report.unused(&["stream"], "only recordings of the Lab Streaming Layer have streams");
     }
+}
+
+/// A press that begins so long after its contact began, and after its end, is no press of it, seconds (assumed: blood
+/// follows within 0.4 s, 4.3).
+const LONG_S: f64 = 1.0;
+
+/// Fewer contacts say nothing of that.
+const FEWEST: usize = 3;
+
+/// That what is called contact is not what a switch was pressed by, in all recordings or in some; `names` are theirs.
+pub(super) fn elsewhere(switch: &SwitchConfig, names: &[String], traces: &[Trace]) -> Vec<String> {
+    if let Err(why) = any_contact(traces) {
+        return vec![why.to_string()];
+    }
+    let of = |(name, trace): (&String, &Trace)| Some(format!("{name}: {}", elsewhere_in(switch, trace)?));
+    names.iter().zip(traces).filter_map(of).collect()
+}
+
+fn elsewhere_in(switch: &SwitchConfig, trace: &Trace) -> Option<String> {
+    let all = Evaluation::of(switch, slice::from_ref(trace));
+    if all.presses < FEWEST {
+        return None;
+    }
+    let judged = all.decisions - all.not_judged;
+    if 2 * all.missed > all.presses && 2 * all.false_switches as usize > judged {
+        return Some(format!(
+            "{} of {} contacts are missed and {} of {judged} presses are false: is contact that of this recording, on \
+             its clock, and the right way round?",
+            all.missed, all.presses, all.false_switches
+        ));
+    }
+    let found = matches(switch, trace);
+    let own = || found.iter().filter(|one| one.fate == Fate::True);
+    let behind = |one: &&Match| {
+        one.contact.is_some_and(|contact| one.press_s >= contact.end_s && one.press_s > contact.start_s + LONG_S)
+    };
+    let (behind, own) = (own().filter(behind).count(), own().count());
+    (2 * behind > own)
+        .then(|| format!("{behind} of {own} presses begin when their contact is over: is contact the right way round?"))
 }

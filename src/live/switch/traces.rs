@@ -17,6 +17,10 @@ use crate::predictor::{Answering, DataFile, extrapolated, open_models};
 /// Rows of a recording, at most: 30 h at 1 kHz.
 const MOST_ROWS: usize = 100_000_000;
 
+/// The share of rows without a prediction that is nothing to be said of: those that wait for lags (one row of each of
+/// five recordings).
+const MOST_UNANSWERED: f64 = 0.01;
+
 /// What a switch is chosen or judged on.
 #[derive(Debug, Clone)]
 pub struct SwitchInputs {
@@ -188,10 +192,21 @@ fn read_trace(
     }
     said.warnings.extend(doubts::time(&times));
     said.warnings.extend(doubts::forces(iter::once((truth.column.as_str(), &truths[..]))));
-    let outside = trace.outside.iter().filter(|outside| **outside).count();
-    said.warnings.extend(extrapolated(outside as u64, trace.outside.len() as u64));
-    if trace.time_s.is_empty() {
+    let (rows, outside) = (trace.time_s.len(), trace.outside.iter().filter(|outside| **outside).count());
+    said.warnings.extend(extrapolated(outside as u64, rows as u64));
+    if rows == 0 {
         return Err(refused("has no rows with the LED on".to_owned()));
+    }
+    let unanswered = trace.value.iter().filter(|value| !value.is_finite()).count();
+    let lacks = "photodiodes that a model reads, or the unlit rows that its values need, are missing";
+    if unanswered == rows {
+        return Err(refused(format!("none of its {rows} rows has a prediction: {lacks}")));
+    }
+    if unanswered as f64 > MOST_UNANSWERED * rows as f64 {
+        said.warnings.push(format!(
+            "{unanswered} of {rows} rows have no prediction, as {lacks}; there the switch lets go, and the hours of \
+             false switches count that time"
+        ));
     }
     if trace.contacts.seconds() == 0.0 {
         let (rows, lit) = (times.len(), &trace.time_s);

@@ -13,7 +13,7 @@ use lunula_live::switch::{Goal, SwitchConfig, crossings_per_hour, tune};
 use super::figures::draw_curve;
 use super::flattery::flattery;
 use super::options::TuneOptions;
-use super::report::{CurvePoint, TuneFigures, TuneReport, note};
+use super::report::{CurvePoint, TuneFigures, TuneReport, elsewhere, note};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
@@ -89,6 +89,8 @@ pub fn tune_switch(
     note(&mut report, &tuned.chosen.evaluation, inputs, &options.truth, led);
     let weak = weak(&report, options);
     report.warnings.extend(weak);
+    let elsewhere = elsewhere(&report.switch, &report.recordings, &traces);
+    report.warnings.extend(elsewhere);
     let text = toml::to_string(&report.switch).map_err(|why| LiveError::Request(why.to_string()))?;
     places.write(out, &text)?;
     if *figures {

@@ -149,10 +149,17 @@ impl Draft<'_> {
         self.models(found, log.as_ref());
     }
 
-    /// One marker file for all videos, or one beside each.
+    /// One marker file for all videos, or one beside each, or one for all that share a key.
     fn markers(&mut self, found: &Inventory, video: Option<&Input>) -> Option<Input> {
-        video?;
-        self.files("markers", "marker files", &found.markers, &["session", "subject"])
+        let video = video?;
+        let own = shape(&found.markers, &["session"]).filter(|own| own.names.len() == 1);
+        let is_shared = |k: usize| {
+            let all: BTreeSet<&String> = video.values.iter().flatten().map(|values| &values[k]).collect();
+            own.as_ref().is_some_and(|own| own.values.iter().all(|values| all.contains(&values[0])))
+        };
+        let shared = (0..video.names.len()).find(|&k| is_shared(k)).map(|k| video.names[k].clone());
+        let names = shared.as_deref().map_or(vec!["session", "subject"], |shared| vec![shared]);
+        self.files("markers", "marker files", &found.markers, &names)
     }
 
     fn angles(&mut self, video: Option<Input>, markers: Option<Input>, joints: Option<Input>) -> Option<Input> {

@@ -75,7 +75,7 @@ pub fn run(
         (watch.tick)(index + 1, info.declared_frames);
     }
     let clock = clock.map(|clock| stages.time("clock", || clock.finish()));
-    stages.time("smooth", || results.smooth());
+    let unsmoothed = stages.time("smooth", || results.smooth());
     results.write_held(clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()))?;
     let pictures = stages.time("figures", || results.draw_pictures())?;
     let search = tracker.effort();
@@ -87,6 +87,7 @@ pub fn run(
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
     warnings.extend(angles.doubts());
+    warnings.extend(unsmoothed);
     warnings.extend(clock_doubt);
     warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());

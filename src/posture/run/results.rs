@@ -207,9 +207,10 @@ impl<'a> Results<'a> {
         Ok(self.joints.write(&cells)?)
     }
 
-    /// Smooths the rows that wait for it, where that is wanted.
-    pub(in crate::posture) fn smooth(&mut self) {
-        let Some(held) = self.held.as_mut().filter(|_| self.smooths) else { return };
+    /// Smooths the rows that wait for it, where that is wanted; says of which joints it can't.
+    pub(in crate::posture) fn smooth(&mut self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let Some(held) = self.held.as_mut().filter(|_| self.smooths) else { return warnings };
         let times_s: Vec<f64> = held.iter().map(|row| row.time_s).collect();
         for joint in 0..self.layout.joints.len() {
             let raw: Vec<Option<Angle>> = held.iter().map(|row| row.angles.angles[joint]).collect();
@@ -217,8 +218,11 @@ impl<'a> Results<'a> {
             for (row, angle) in held.iter_mut().zip(smoothed.angles) {
                 row.angles.angles[joint] = angle;
             }
+            let name = &self.layout.joints[joint].name;
+            warnings.extend(smoothed.doubt.map(|doubt| format!("{name}: {doubt}")));
             self.angles[joint].smoothing = smoothed.model;
         }
+        warnings
     }
 
     /// Writes the rows that waited, with the clock's time where its fit gives it.

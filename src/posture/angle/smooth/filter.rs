@@ -51,11 +51,8 @@ struct Passed {
 pub(super) struct Row {
     pub(super) value: f64,
     pub(super) sd: f64,
-}
-
-pub(super) struct Rows {
-    pub(super) rows: Vec<Row>,
-    pub(super) left_out: usize,
+    /// No motion explains what was measured: only the neighbours speak.
+    pub(super) left_out: bool,
 }
 
 /// -2 ln of the likelihood of a series.
@@ -64,13 +61,13 @@ pub(super) fn deviance(series: &[Observation], parameters: &Parameters, half_tur
 }
 
 /// Smooths a series.
-pub(super) fn smooth(series: &[Observation], parameters: &Parameters, half_turn: f64) -> Rows {
+pub(super) fn smooth(series: &[Observation], parameters: &Parameters, half_turn: f64) -> Vec<Row> {
     let mut passed: Vec<Passed> = Vec::with_capacity(series.len());
     forwards(series, parameters, half_turn, |at, row| {
         passed.truncate(at);
         passed.push(row);
     });
-    let mut rows = vec![Row { value: 0.0, sd: 0.0 }; series.len()];
+    let mut rows = vec![Row { value: 0.0, sd: 0.0, left_out: false }; series.len()];
     // Bierman's adjoint: what the rows from here on say, as gradient and information.
     let (mut gradient, mut information) = (Vector4::zeros(), Matrix4::zeros());
     for at in (0..series.len()).rev() {
@@ -86,7 +83,8 @@ pub(super) fn smooth(series: &[Observation], parameters: &Parameters, half_turn:
         }
         let by_angle = row.spread.column(0).into_owned();
         let variance = row.spread[(0, 0)] - by_angle.dot(&(information * by_angle));
-        rows[at] = Row { value: row.state[0] - by_angle.dot(&gradient), sd: variance.max(0.0).sqrt() };
+        let value = row.state[0] - by_angle.dot(&gradient);
+        rows[at] = Row { value, sd: variance.max(0.0).sqrt(), left_out: !row.used };
         if row.starts {
             (gradient, information) = (Vector4::zeros(), Matrix4::zeros());
         } else {
@@ -95,7 +93,7 @@ pub(super) fn smooth(series: &[Observation], parameters: &Parameters, half_turn:
             information = step.transpose() * information * step;
         }
     }
-    Rows { rows, left_out: passed.iter().filter(|p| !p.used).count() }
+    rows
 }
 
 /// Runs the filter and shows each row with its place; a place may be shown again, and then all after it are too.

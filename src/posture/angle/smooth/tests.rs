@@ -197,8 +197,8 @@ fn bierman_s_form_is_the_least_squares_solution() {
     let inverse = normal.try_inverse().unwrap();
     let expected = &inverse * right;
     let smoothed = filter::smooth(&series, &parameters, half_turn);
-    assert_eq!(smoothed.left_out, 0);
-    for (k, row) in smoothed.rows.iter().enumerate() {
+    assert!(smoothed.iter().all(|row| !row.left_out));
+    for (k, row) in smoothed.iter().enumerate() {
         // Measured 7.5e-9 and 2.5e-8 of values near 10 and standard errors near 1.
         assert!((row.value - expected[3 * k]).abs() <= 1e-7, "{k}: {} {}", row.value, expected[3 * k]);
         assert!((row.sd - inverse[(3 * k, 3 * k)].sqrt()).abs() <= 1e-7, "{k}: {}", row.sd);
@@ -268,6 +268,46 @@ fn a_jump_or_a_long_gap_begins_anew() {
     let smoothed = smooth(&times, &series.angles);
     for (angle, truth) in smoothed.angles.iter().flatten().zip(&series.truth) {
         assert!((angle.rad - truth).abs() <= 5.0 * angle.sd_rad && angle.sd_rad < 0.01, "{angle:?} {truth}");
+    }
+}
+
+/// A joint that hardly bends back, twice a second: its turns are sharper than its motion.
+fn hinge(t: f64) -> f64 {
+    let flexed = 35.0 - 40.0 * (std::f64::consts::TAU * 2.0 * t).cos();
+    if flexed < 10.0 { -5.0 + 0.02 * flexed } else { -5.0 + 0.85 * (flexed - 10.0) }
+}
+
+#[test]
+fn a_motion_that_is_too_fast_for_the_frames_stays_as_measured() {
+    for (rate_hz, seed) in [(24.0, 1), (24.0, 2), (15.0, 4), (10.0, 5), (30.0, 3)] {
+        let series = draw(Drawn { rows: 144, rate_hz, motion: hinge, sd_deg: 0.12, ..PLAIN }, seed);
+        let smoothed = smooth(&series.times_s, &series.angles);
+        let known = smoothed.angles.iter().zip(&series.truth).filter_map(|(angle, truth)| angle.map(|a| (a, truth)));
+        let far = known.map(|(angle, truth)| (angle.rad - truth).abs().to_degrees()).fold(0.0, f64::max);
+        println!("{rate_hz} Hz: {far:.2} degrees off; {:?}", smoothed.doubt);
+        assert!(far <= 1.0, "{far}");
+        let is_as_measured = smoothed.angles == series.angles;
+        assert_eq!(is_as_measured, smoothed.model.is_none());
+        assert_eq!(is_as_measured, smoothed.doubt.is_some());
+    }
+}
+
+#[test]
+fn a_wild_angle_amid_a_motion_is_its_neighbours() {
+    for motion in [equation_27, one_hertz, stop_and_go] {
+        let series = draw(Drawn { motion, ..PLAIN }, 7);
+        let mut wild = series.angles.clone();
+        for row in [100, 250, 251, 400] {
+            wild[row].as_mut().unwrap().rad += 0.6;
+        }
+        let smoothed = smooth(&series.times_s, &wild);
+        let model = smoothed.model.unwrap();
+        let ratio =
+            |row: usize| smoothed.angles[row].map_or(f64::NAN, |angle| angle.sd_rad / wild[row].unwrap().sd_rad);
+        println!("{} left out; {:?}", model.left_out, [100, 250, 251, 400].map(ratio));
+        assert!(model.left_out == 4 && smoothed.doubt.is_none());
+        let far = smoothed.angles.iter().zip(&series.truth).map(|(angle, truth)| (angle.unwrap().rad - truth).abs());
+        assert!(far.fold(0.0, f64::max).to_degrees() <= 0.5);
     }
 }
 

@@ -83,9 +83,26 @@ pub fn prune(
         let what = "no subset has a model: the photodiodes do not change, or there are too few rows to train on";
         warnings.push(what.to_owned());
     }
+    warnings.extend(no_better(&figures));
     watch.go_on()?;
     let report = Report { left_out, warnings, notes, ..Report::new("prune", watch, figures) };
     end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
+}
+
+/// That even all photodiodes say less of what is compared on than none of them, by the targets.
+fn no_better(figures: &PruneFigures) -> Option<String> {
+    let all = figures.best_of_size.iter().find(|row| row.inputs.len() == figures.inputs.len())?;
+    let (with, without) = (all.validate_rmse.as_ref()?, figures.none.as_ref()?);
+    let worse = with.0.iter().zip(&without.0).filter(|((_, with), (_, without))| with >= without);
+    let worse: Vec<String> =
+        worse.map(|((name, with), (_, without))| format!("{name} ({with:.3}, {without:.3})")).collect();
+    (!worse.is_empty()).then(|| {
+        format!(
+            "the errors with all photodiodes are as large as with none of them: {}; what is compared on is another \
+             finger's or sensor's, or its columns or times are others': no subset means anything",
+            worse.join(", ")
+        )
+    })
 }
 
 /// What would be done and what not; `files`: how many to train and to validate on; `ambient`: their step of
