@@ -6,10 +6,12 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use image::GrayImage;
 use ndarray_npy::WriteNpyExt;
+use rayon::Scope;
 
 use super::draw::{Thumbnails, draw};
 use super::plan::{light_of, steps};
@@ -20,6 +22,7 @@ use crate::figure::{encode_png, png};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
 use crate::nail::Positions;
+use crate::nailvideo::affine::Affine;
 use crate::nailvideo::error::NailVideoError;
 use crate::nailvideo::first::{Finder, FirstNail, NotOne, labelme, upright};
 use crate::nailvideo::follow::{Follower, Lost, beyond_fine};
@@ -75,55 +78,71 @@ pub fn run(
     }
     let staging = Staging::new(&outputs.folder)?;
     let finder = Finder::new(inputs.outline.as_deref(), options);
-    let job = Job { inputs, options, outputs, info: &info, light, staging: &staging, stages: &stages };
+    let job = Job {
+        inputs,
+        options,
+        outputs,
+        info: &info,
+        light,
+        staging: &staging,
+        stages: &stages,
+        frames: Frames::default(),
+    };
     let mut counts = FrameCounts::default();
     let mut kept: Vec<Kept> = Vec::new();
     let mut at_work: Option<AtWork> = None;
     let mut why_not = finder.nowhere();
     // What a person may correct.
     let mut suggested: Option<Suggestion> = None;
-    loop {
-        watch.go_on()?;
-        let Some(item) = video.next_item()? else { break };
-        let (index, time_s, frame) = match &item {
-            Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
-            Item::Missing { index, time_s } => (*index, *time_s, None),
-        };
-        counts.all += 1;
-        let place = match (&mut at_work, frame) {
-            (Some(work), frame) => job.step(work, index, time_s, frame)?,
-            (None, None) => Kept { index, time_s, place: Err(Lost::Undecoded), readings: Vec::new(), skin: f64::NAN },
-            (None, Some(frame)) => {
-                if finder.looks_at(index) {
-                    let picture = upright(frame, &info);
-                    match stages.time("find the nail", || finder.find(&picture)) {
-                        Ok(nail) => {
-                            counts.first = index;
-                            job.suggest(&Suggestion { index, picture, seen: vec![nail.to_draw()] })?;
-                            at_work = Some(job.begin(nail, frame, &positions, &kept)?);
-                        }
-                        Err(NotOne { why, seen }) => {
-                            if suggested.as_ref().is_none_or(|one| one.seen.is_empty() && !seen.is_empty()) {
-                                why_not = why;
-                                suggested = Some(Suggestion { index, picture, seen });
+    rayon::in_place_scope(|scope| -> Result<(), NailVideoError> {
+        loop {
+            watch.go_on()?;
+            job.frames.checked()?;
+            let Some(item) = video.next_item()? else { break };
+            let (index, time_s, frame) = match &item {
+                Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
+                Item::Missing { index, time_s } => (*index, *time_s, None),
+            };
+            counts.all += 1;
+            let place = match (&mut at_work, frame) {
+                (Some(work), frame) => job.step(scope, work, index, time_s, frame)?,
+                (None, None) => {
+                    Kept { index, time_s, place: Err(Lost::Undecoded), readings: Vec::new(), skin: f64::NAN }
+                }
+                (None, Some(frame)) => {
+                    if finder.looks_at(index) {
+                        let picture = upright(frame, &info);
+                        match stages.time("find the nail", || finder.find(&picture)) {
+                            Ok(nail) => {
+                                counts.first = index;
+                                job.suggest(&Suggestion { index, picture, seen: vec![nail.to_draw()] })?;
+                                at_work = Some(job.begin(nail, frame, &positions, &kept)?);
+                            }
+                            Err(NotOne { why, seen }) => {
+                                if suggested.as_ref().is_none_or(|one| one.seen.is_empty() && !seen.is_empty()) {
+                                    why_not = why;
+                                    suggested = Some(Suggestion { index, picture, seen });
+                                }
                             }
                         }
                     }
+                    match &mut at_work {
+                        Some(work) => job.step(scope, work, index, time_s, Some(frame))?,
+                        None if !finder.may_look_on(index) => break,
+                        None => Kept { index, time_s, place: Err(Lost::NotYet), readings: Vec::new(), skin: f64::NAN },
+                    }
                 }
-                match &mut at_work {
-                    Some(work) => job.step(work, index, time_s, Some(frame))?,
-                    None if !finder.may_look_on(index) => break,
-                    None => Kept { index, time_s, place: Err(Lost::NotYet), readings: Vec::new(), skin: f64::NAN },
-                }
+            };
+            match &place.place {
+                Ok(_) => counts.followed += 1,
+                Err(lost) => *counts.lost.entry(lost.name().to_owned()).or_default() += 1,
             }
-        };
-        match &place.place {
-            Ok(_) => counts.followed += 1,
-            Err(lost) => *counts.lost.entry(lost.name().to_owned()).or_default() += 1,
+            kept.push(place);
+            (watch.tick)(counts.all, info.declared_frames);
         }
-        kept.push(place);
-        (watch.tick)(counts.all, info.declared_frames);
-    }
+        Ok(())
+    })?;
+    job.frames.checked()?;
     stages.add("decode", video.decoding(), counts.all);
     let Some(work) = at_work else {
         if let Some(outline) = &inputs.outline {
@@ -170,6 +189,33 @@ struct Job<'a> {
     light: Light,
     staging: &'a Staging,
     stages: &'a Stages,
+    frames: Frames,
+}
+
+/// Normalized frames that are made and written beside the work on the next ones.
+#[derive(Default)]
+struct Frames {
+    waiting: AtomicUsize,
+    /// The first that could not be written.
+    failed: Mutex<Option<(u64, NailVideoError)>>,
+}
+
+/// So many wait at most; then one is made and written at once.
+const MOST_WAITING: usize = 4;
+
+impl Frames {
+    /// Whether all could be written so far.
+    fn checked(&self) -> Result<(), NailVideoError> {
+        let failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner).take();
+        failed.map_or(Ok(()), |(_, why)| Err(why))
+    }
+
+    fn fail(&self, index: u64, why: NailVideoError) {
+        let mut failed = self.failed.lock().unwrap_or_else(PoisonError::into_inner);
+        if failed.as_ref().is_none_or(|(first, _)| index < *first) {
+            *failed = Some((index, why));
+        }
+    }
 }
 
 /// A nail that is followed.
@@ -187,8 +233,6 @@ struct AtWork {
     se_px: Vec<f64>,
     ncc: Vec<f64>,
     quantizer: Vec<f64>,
-    /// The last normalized frame, which is written while the next one is made.
-    frame: Option<(u64, GrayImage)>,
 }
 
 /// A frame and what was seen on it, for a person to correct.
@@ -253,24 +297,35 @@ impl Job<'_> {
             se_px: Vec::new(),
             ncc: Vec::new(),
             quantizer: Vec::new(),
-            frame: None,
             nail,
         })
     }
 
-    /// Writes a normalized frame.
-    fn write_frame(&self, frame: Option<(u64, GrayImage)>) -> Result<(), NailVideoError> {
-        let Some((index, picture)) = frame else { return Ok(()) };
-        let name = format!("frames/{index:06}.png");
-        let mut bytes = Vec::new();
-        encode_png(&picture, [SIDE as u32; 2], image::ExtendedColorType::L8, &mut bytes)
-            .map_err(|why| self.staging.refused(&name, why))?;
-        Ok(self.staging.write(&name, &bytes)?)
+    /// Makes a normalized frame and writes it, on another thread where few others wait.
+    fn write_frame<'s>(&'s self, scope: &Scope<'s>, index: u64, colours: Colours, frame_from_nail: Affine) {
+        let write = move || {
+            let name = format!("frames/{index:06}.png");
+            let written = self.stages.time("normalized frames", || -> Result<(), NailVideoError> {
+                let mut bytes = Vec::new();
+                let picture = green(&colours, &frame_from_nail);
+                encode_png(&picture, [SIDE as u32; 2], image::ExtendedColorType::L8, &mut bytes)
+                    .map_err(|why| self.staging.refused(&name, why))?;
+                Ok(self.staging.write(&name, &bytes)?)
+            });
+            written.unwrap_or_else(|why| self.frames.fail(index, why));
+            self.frames.waiting.fetch_sub(1, Ordering::Relaxed);
+        };
+        if self.frames.waiting.fetch_add(1, Ordering::Relaxed) < MOST_WAITING {
+            scope.spawn(move |_| write());
+        } else {
+            write();
+        }
     }
 
     /// A frame.
-    fn step(
-        &self,
+    fn step<'s>(
+        &'s self,
+        scope: &Scope<'s>,
         work: &mut AtWork,
         index: u64,
         time_s: f64,
@@ -304,26 +359,17 @@ impl Job<'_> {
                 .iter_mut()
                 .for_each(|window| window.add(time_s, &colours, &frame_from_nail, work.sampler.covered()));
         });
-        if self.outputs.frames {
-            let before = work.frame.take();
-            let (written, picture) = self.stages.time("normalized frames", || {
-                rayon::join(|| self.write_frame(before), || green(&colours, &frame_from_nail))
-            });
-            written?;
-            work.frame = Some((index, picture));
-        }
         if let Some(thumbnails) = &mut work.thumbnails {
             self.stages.time("figures", || thumbnails.offer(time_s, &colours, &frame_from_nail));
         }
         work.se_px.push(place.se_px);
         work.ncc.push(place.ncc);
         work.quantizer.extend(frame.and_then(|frame| frame.quantizer));
-        Ok(Kept {
-            place: Ok(place.se_px as f32),
-            readings: work.readings[..work.photodiodes].to_vec(),
-            skin: work.sampler.skin(&colours, &frame_from_nail),
-            ..lost
-        })
+        let skin = work.sampler.skin(&colours, &frame_from_nail);
+        if self.outputs.frames {
+            self.write_frame(scope, index, colours, frame_from_nail);
+        }
+        Ok(Kept { place: Ok(place.se_px as f32), readings: work.readings[..work.photodiodes].to_vec(), skin, ..lost })
     }
 
     /// Writes what needs the whole video.
@@ -335,8 +381,7 @@ impl Job<'_> {
         positions: &Positions,
         watch: &Watch<'_>,
     ) -> Result<NailVideoReport, NailVideoError> {
-        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, quantizer, sampler, frame, .. } = work;
-        self.write_frame(frame)?;
+        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, quantizer, sampler, .. } = work;
         motion.finish()?;
         if let Some(cells) = cells {
             cells.finish()?;
