@@ -19,10 +19,10 @@ use super::joints::Angle;
 use crate::median::median_of;
 use filter::{Observation, Parameters};
 
-/// Where more angles are left out than these, or than this share, the motion is none that is known, and the series stays
-/// as it is: joints that turn within few frames are taken for joints at rest (measured on phantoms that bend at 1 to 3
-/// Hz, filmed at 10 to 30 frames a second: 3 to 15 of 60 to 180 angles are left out then, and what takes their place is
-/// up to 900 degrees off; in 29 videos of slower ones none is).
+/// Where more angles are left out than these, or than this share, the motion is none that is known, and the series
+/// stays as it is: joints that turn within few frames are taken for joints at rest (measured on phantoms that bend at 1
+/// to 3 Hz, filmed at 10 to 30 frames a second: 3 to 15 of 13 to 108 angles are left out then, and what takes their
+/// place is up to 900 degrees off; in 29 videos of slower ones none is).
 const MOST_LEFT_OUT: usize = 2;
 const SHARE_LEFT_OUT: f64 = 0.01;
 /// An angle that is left out is known by its neighbours where their standard error is at most so many times its own
