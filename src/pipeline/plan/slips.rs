@@ -1,5 +1,6 @@
 //! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, and
-//! files whose names fit a pattern but for the case of letters.
+//! files whose names fit a pattern but for the case of letters. And what is done apart for one: values of a table, of a
+//! key that a stage is done for each of, that differ in case and spaces only.
 //!
 //! A value is a slip where no `where` asks for it as it is written, and it differs from one that is asked for only in
 //! case and spaces; or by one letter, where no task works on the row. Values that differ in a digit, or in their first
@@ -9,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::pipeline::items::InputItems;
 use crate::pipeline::spec::{Filter, From, InputSource, Spec};
-use crate::words::plain;
+use crate::words::{plain, twins};
 
 /// How many places of one slip are listed.
 const SHOWN: usize = 3;
@@ -31,6 +32,12 @@ pub(super) fn slips(spec: &Spec, inputs: &[Option<InputItems>], taken: &BTreeSet
             (InputSource::Files(pattern), Some(items)) => warnings.extend(of_files(pattern, items, taken)),
             (_, None) => {}
         }
+    }
+    let each: BTreeSet<&String> =
+        spec.stages.iter().filter_map(|stage| stage.each.as_ref()).flat_map(|(keys, _)| keys).collect();
+    for ((table, items), key) in tables.iter().flat_map(|of| each.iter().map(move |key| (of, key))) {
+        let values = items.rows.iter().filter_map(|(cells, _)| cells.get(key.as_str()));
+        warnings.extend(twins(&format!("{table}: the values of `{key}`"), values));
     }
     for ((table, key), values) in asked(spec) {
         warnings.extend(tables.get(table).into_iter().flat_map(|items| of_table(table, key, &values, items, taken)));

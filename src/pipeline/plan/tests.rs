@@ -314,6 +314,18 @@ fn rows_that_a_slip_leaves_out_are_warned_of_with_the_nearest_value() {
 }
 
 #[test]
+fn values_that_a_stage_is_done_for_each_of_and_that_are_all_but_the_same_are_warned_of() {
+    let model = "[stage.model]\njob = \"train\"\ndata = \"sets\"\neach = [\"subject\"]\n";
+    let each = STUDY.replace("[\"sets\"]", "[\"sets\", \"model\"]") + model;
+    let other = ["S02,2,bending,v/S02.mp4,l/S02b.csv", "s02,1,bending,v/S03.mp4,l/S03.csv"];
+    let twins = "sessions.csv: the values of `subject` `S02` and `s02` differ in case or spaces only, and count apart: \
+                 are they the same?";
+    assert_eq!(warned(&other, &each), [twins]);
+    assert_eq!(warned(&other, STUDY), [""; 0], "for each of all keys");
+    assert_eq!(warned(&[other[0], SLIPS[0]], &each), [""; 0]);
+}
+
+#[test]
 fn rows_that_are_left_out_by_choice_are_not_warned_of() {
     let both = STUDY.replace("\"bending\" }", "[\"bending\", \"Bending\", \"bendign\"] }");
     let of_subject = STUDY.replace("kind = \"bending\"", "subject = \"S01\"");

@@ -49,6 +49,11 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
             notes.push(format!("{}:{line}: no segment uses the marker `{}`", path.display(), entry.key));
         }
     }
+    let mut warnings = Vec::new();
+    for (name, what) in odd_joints(&joints, &segments) {
+        let at = joint_entries.iter().find(|entry| entry.key == name).map_or(0, |entry| entry.key_at);
+        warnings.push(format!("{}:{}: {what}", path.display(), findings.line(at)));
+    }
     if !findings.is_empty() {
         return Err(faults(findings));
     }
@@ -66,7 +71,37 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
         start,
         clock,
         camera,
+        warnings,
         notes,
+    })
+}
+
+/// Joints that are hardly meant so: numbered against the finger's order, or of two segments that begin at one marker.
+/// Each with its name.
+fn odd_joints<'a>(
+    joints: &'a [(String, [usize; 2])],
+    segments: &'a [(String, [usize; 2])],
+) -> impl Iterator<Item = (&'a str, String)> {
+    let number = |name: &str| name.strip_prefix('J').and_then(|number| number.parse::<u32>().ok());
+    let is_after = move |one: &(String, [usize; 2]), other: &&(String, [usize; 2])| {
+        other.1[0] == one.1[1] && number(&one.0).zip(number(&other.0)).is_some_and(|(one, other)| one > other)
+    };
+    joints.iter().flat_map(move |joint| {
+        let (name, [proximal, distal]) = joint;
+        let exchanged = joints.iter().find(|other| is_after(joint, other)).map(|(other, _)| {
+            format!(
+                "{name} lies before {other} on the finger, as its distal segment is the proximal one of {other}; J1, J2 \
+                 and J3 are the MP, PIP and DIP joint: are the two exchanged?"
+            )
+        });
+        let overlap = (segments[*proximal].1[0] == segments[*distal].1[0]).then(|| {
+            format!(
+                "both segments of {name}, `{}` and `{}`, begin at the same marker, so that one lies over the other; a \
+                 finger's distal segment begins where the proximal one ends",
+                segments[*proximal].0, segments[*distal].0
+            )
+        });
+        exchanged.into_iter().chain(overlap).map(move |what| (name.as_str(), what))
     })
 }
 

@@ -127,6 +127,8 @@ pub struct Layout {
     pub clock: Option<Clock>,
     /// The lens.
     pub camera: Option<Camera>,
+    /// What is hardly meant so, each with its place.
+    pub warnings: Vec<String>,
     /// What is no fault but worth saying, each with its place.
     pub notes: Vec<String>,
 }

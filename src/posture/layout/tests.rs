@@ -59,6 +59,21 @@ fn a_whole_file_is_read_in_its_own_order() {
 }
 
 #[test]
+fn joints_that_are_hardly_meant_so_are_warned_of() {
+    let warnings = |segments: &str, joints: &str| {
+        let markers = "[markers]\na = \"#f00\"\nb = \"#0f0\"\nc = \"#00f\"\nd = \"#ff0\"\n";
+        parse(&format!("{markers}[segments]\n{segments}\n[joints]\n{joints}\n")).unwrap().warnings
+    };
+    let chain = "p = [\"a\", \"b\"]\nm = [\"b\", \"c\"]\nd = [\"c\", \"d\"]";
+    assert_eq!(warnings(chain, "J2 = [\"p\", \"m\"]\nJ3 = [\"m\", \"d\"]"), [""; 0]);
+    assert_eq!(warnings(chain, "wrist = [\"m\", \"d\"]\nJ1 = [\"p\", \"m\"]"), [""; 0]);
+    let exchanged = warnings(chain, "J2 = [\"m\", \"d\"]\nJ3 = [\"p\", \"m\"]");
+    assert!(exchanged.len() == 1 && exchanged[0].starts_with("m.toml:12: J3 lies before J2"), "{exchanged:?}");
+    let over = warnings(&chain.replace("[\"c\", \"d\"]", "[\"b\", \"d\"]"), "J3 = [\"m\", \"d\"]");
+    assert!(over.len() == 1 && over[0].contains("both segments of J3, `m` and `d`, begin at"), "{over:?}");
+}
+
+#[test]
 fn only_what_wanted_joints_use_is_needed() {
     let layout = parse(WHOLE).unwrap();
     assert_eq!(layout.needed(), [true, true, true, true, false]);

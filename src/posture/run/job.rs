@@ -86,6 +86,7 @@ pub fn run(
     let clock_doubt = clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()?.doubt.clone());
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
+    warnings.extend(layout.warnings.iter().cloned());
     warnings.extend(angles.doubts());
     warnings.extend(unsmoothed);
     warnings.extend(clock_doubt);
