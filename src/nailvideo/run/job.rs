@@ -315,7 +315,8 @@ impl Job<'_> {
             written.unwrap_or_else(|why| self.frames.fail(index, why));
             self.frames.waiting.fetch_sub(1, Ordering::Relaxed);
         };
-        if self.frames.waiting.fetch_add(1, Ordering::Relaxed) < MOST_WAITING {
+        let waiting = self.frames.waiting.fetch_add(1, Ordering::Relaxed);
+        if waiting < MOST_WAITING && self.options.threads != 1 {
             scope.spawn(move |_| write());
         } else {
             write();
