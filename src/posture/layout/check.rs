@@ -90,8 +90,8 @@ fn odd_joints<'a>(
         let (name, [proximal, distal]) = joint;
         let exchanged = joints.iter().find(|other| is_after(joint, other)).map(|(other, _)| {
             format!(
-                "{name} lies before {other} on the finger, as its distal segment is the proximal one of {other}; J1, J2 \
-                 and J3 are the MP, PIP and DIP joint: are the two exchanged?"
+                "{name} lies before {other} on the finger, as its distal segment is the proximal one of {other}; J1, \
+                 J2 and J3 are the MP, PIP and DIP joint: are the two exchanged?"
             )
         });
         let overlap = (segments[*proximal].1[0] == segments[*distal].1[0]).then(|| {
