@@ -7,9 +7,10 @@ use image::RgbImage;
 use super::report::NailVideoReport;
 use crate::figure::{Chart, Item, Page, Sheet, Thinned, Tile, TilePicture, draw_charts};
 use crate::files::{Staging, WriteError};
+use crate::median::median_of;
 use crate::nailvideo::affine::Affine;
 use crate::nailvideo::normal::picture;
-use crate::nailvideo::press::{Recording, Row, USE};
+use crate::nailvideo::press::{Event, Recording, Row, USE};
 use crate::nailvideo::sample::Colours;
 
 /// Side of a picture of the sheet, pixels, how many are kept, how far apart at least, seconds, and how many are drawn.
@@ -101,9 +102,15 @@ fn charts(recording: &Recording<'_>, rows: &[Row], unit: &str) -> Vec<Chart> {
         all.push(time_s, recording.traces.iter().map(|trace| value(&trace.values)));
     }
     let lost: Vec<[f64; 2]> = all.lacking();
+    // An event's onset in the median of the photodiodes; where it is refused in all, when it was found.
+    let begins = |of: &Row, event: Event, found_s: f64| {
+        let own = rows.iter().filter(|row| row.press == of.press && row.event == event);
+        median_of(own.filter_map(|row| row.times_s()[0].map(|[onset_s, ..]| onset_s))).unwrap_or(found_s)
+    };
     let pressed: Vec<[f64; 2]> = (1..)
         .map_while(|press| rows.iter().find(|row| row.press == press))
-        .filter_map(|row| row.span_s().map(|(from, to)| [from, to]))
+        .filter_map(|row| row.span_s().map(|found| (row, found)))
+        .map(|(row, (from, to))| [begins(row, Event::Press, from), begins(row, Event::Release, to)])
         .collect();
     let half = recording.traces.len().div_ceil(2);
     let count = recording.traces.len();
@@ -122,7 +129,7 @@ fn charts(recording: &Recording<'_>, rows: &[Row], unit: &str) -> Vec<Chart> {
                 items.push(Item::Line { name: None, runs: vec![vec![[at, low], [at, high]]], colour: 5, width: 1 });
             }
         }
-        let title = if first { "Virtual photodiodes over time (upright lines: press, release)" } else { "" };
+        let title = if first { "Virtual photodiodes over time (upright lines: a press or release begins)" } else { "" };
         Chart::new(title, if first && half < count { "" } else { "time, s" }, unit, items, 420)
     };
     let mut charts = vec![chart(0, half, true)];
