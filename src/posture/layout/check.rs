@@ -49,13 +49,13 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
             notes.push(format!("{}:{line}: no segment uses the marker `{}`", path.display(), entry.key));
         }
     }
+    if !findings.is_empty() {
+        return Err(faults(findings));
+    }
     let mut warnings = Vec::new();
     for (name, what) in odd_joints(&joints, &segments) {
         let at = joint_entries.iter().find(|entry| entry.key == name).map_or(0, |entry| entry.key_at);
         warnings.push(format!("{}:{}: {what}", path.display(), findings.line(at)));
-    }
-    if !findings.is_empty() {
-        return Err(faults(findings));
     }
     let before = |segment: usize| joints.iter().find(|(_, pair)| pair[1] == segment).map(|(_, pair)| pair[0]);
     Ok(Layout {
