@@ -507,6 +507,17 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
         .map(|event| event["t"].to_string())
         .collect();
     assert_eq!(events, presses);
+    // Thresholds are of the model whose predictions chose them.
+    let model = dir.parsed("m.json")["sha256"].as_str().unwrap().to_owned();
+    assert!(dir.text("s.toml").contains(&format!("model_sha256 = \"{model}\"")), "{}", dir.text("s.toml"));
+    assert!(!dir.lunula(&[&evaluate[..], &["--out", "ev3"]].concat()).expect(0).stderr.contains("another model"));
+    dir.train("a.csv", "Fz_N", "other.json", &["-q"]).expect(0);
+    for other in [
+        "switch evaluate s.toml c.csv --model other.json --contact Fz_N<-0.01 --out ev4",
+        "live --source c.csv --model other.json --switch s.toml",
+    ] {
+        dir.words(other).expect(0).says("the switch was chosen on predictions of another model");
+    }
     // What can't be.
     dir.lunula(&[&tune[..], &["--false-per-hour", "0", "--out", "t.toml"]].concat()).expect(2).says("above 0");
     let nothing = ["switch", "tune", "a.csv", "--model", "m.json", "--contact", "Fz_N<-9", "--out", "t.toml"];
@@ -602,6 +613,38 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     judge(&dir, "odd.csv", &[]).expect(2).says("1000 of 2000 rows say whether the finger touches (`Fz_N<-0.01`)");
     write("none.csv", &|t_s, light, force| where_known(t_s, light, force, false));
     judge(&dir, "none.csv", &[]).expect(2).says("no row says whether the finger touches");
+}
+
+#[test]
+fn a_sensor_that_repeats_its_last_sample_is_said_by_switch_and_live() {
+    let dir = desk();
+    let two = |t_s: f64, light: f64, force: f64| format!("{t_s},{light},{},{force}\n", 1.0 + 0.1 * (7.0 * t_s).sin());
+    let names = "time_s,P1,P2,Fz_N";
+    dir.write("good.csv", altered(20.0, names, two));
+    dir.train("good.csv", "Fz_N", "two.json", &["-q"]).expect(0);
+    let stopped = std::cell::RefCell::new(String::new());
+    dir.write(
+        "stopped.csv",
+        altered(20.0, names, |t_s, light, force| {
+            let row = two(t_s, light, force);
+            let mut last = stopped.borrow_mut();
+            if !(5.0..12.0).contains(&t_s) {
+                *last = row.split(',').skip(1).take(2).collect::<Vec<_>>().join(",");
+            }
+            format!("{t_s},{last},{force}\n")
+        }),
+    );
+    let live = |name: &str| dir.words(&format!("live --source {name} --model two.json --switch sw.toml")).expect(0);
+    let judged = |name: &str| {
+        let options = "--model two.json --contact Fz_N<-0.01";
+        dir.words(&format!("switch evaluate sw.toml {name} {options} --out ev-{name}")).expect(0)
+    };
+    for said in [live("good.csv"), judged("good.csv")] {
+        assert!(!said.stderr.contains("keep(s) all values"), "{}", said.stderr);
+    }
+    for said in [live("stopped.csv").says("stand still at 5.48"), judged("stopped.csv")] {
+        said.says("keep(s) all values in 1 stretch(es), the longest 701 samples from 4.99");
+    }
 }
 
 #[test]

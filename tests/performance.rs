@@ -231,7 +231,19 @@ fn slips_of_names_and_units_are_warned_of() {
     let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).stderr;
     assert!(said.contains("half of the decisions of B took ") && !said.contains("decisions of A"), "{said}");
     assert!(said.contains("A, C have the same times in all 3 trials, and count apart"), "{said}");
+    // A method's log that was copied under another's name, a clock that is never reset, a speed in mm/s.
+    let method = |method: &'static str| [1, 2, 3].map(|k| ("A", method, k, 2.0 - 0.3 * f64::from(k)));
+    dir.write("trials.csv", table(&[method("pendant"), method("virtual")].concat()));
+    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
+    said.says("pendant, virtual have the same times in all 3 trials");
+    let counted_on = |k: u32| ("A", "pendant", k, 3.0 * f64::from(k) + (f64::from(k) - 1.0) * SHORTEST_S / 27.0);
+    dir.write("trials.csv", table(&[&(1..5).map(counted_on).collect::<Vec<_>>()[..], &of("B", 1.0)].concat()));
+    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
+    said.says("each trial of A with pendant took a whole drive longer than the one before");
     dir.write("trials.csv", by_hand());
+    run(&dir, "trials.csv --path-m 1.42 --speed-mps 25 --decisions 27 --out o")
+        .expect(0)
+        .says("driving alone takes 0.057 s of 192 s in the median");
     let plain = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
     assert!(!plain.stderr.contains("warning"), "{}", plain.stderr);
 }

@@ -257,6 +257,21 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     let clipped = |row: Vec<f64>| vec![row[0], row[1].max(-0.7)];
     dir.write("end.csv", csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]).into_iter().map(clipped).collect::<Vec<_>>()));
     run(&dir, "end.csv --out t").expect(0).says("finger: Fz_N stays at exactly -0.7, its least value");
+    // A spike in one row, a force that stands still while it presses, and a column that was copied to another finger.
+    let wavers = |k: usize| -1.2 + (0.05 * k as f64).cos() + 0.01 * (7.0 * k as f64).sin();
+    let of = |name: &str, names: &str, force: &dyn Fn(usize) -> Vec<f64>| {
+        let rows = (0..1000).map(|k| [vec![0.01 * k as f64], force(k)].concat()).collect::<Vec<_>>();
+        dir.write(name, csv(names, &rows));
+        run(&dir, &format!("{name} --out t")).expect(0)
+    };
+    let two = "time_s,index.Fz_N,middle.Fz_N";
+    let good = of("good.csv", two, &|k| vec![wavers(k), wavers(k + 90)]);
+    assert!(!good.stderr.contains("warning"), "{}", good.stderr);
+    of("spike.csv", "time_s,Fz_N", &|k| vec![if k == 500 { -22.0 } else { wavers(k) }])
+        .says("finger: Fz_N is -22 in one of 1 row(s), far beyond all others");
+    of("still.csv", "time_s,Fz_N", &|k| vec![wavers(if (200..500).contains(&k) { 200 } else { k })])
+        .says("finger: Fz_N keep(s) all values in 1 stretch(es), the longest 300 samples from 2.000 to 4.990 s");
+    of("copied.csv", two, &|k| vec![wavers(k); 2]).says("middle: Fz_N is that of index in every row");
     dir.write("again.csv", csv("time_s,Fz_N", &up));
     run(&dir, "up.csv again.csv --out t")
         .expect(0)

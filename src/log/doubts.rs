@@ -22,10 +22,17 @@ const NEAR_S: [[f64; 2]; 2] = [[9e-4, 15.0], [2e-3, 3.0]];
 const TOUCHES_N: f64 = 0.05;
 const LOOSE_ROWS: usize = 20;
 const SHEARED_N: f64 = 0.15;
+/// A finger that is sheared by so much presses with this share of it at least (assumed: skin holds less the harder it
+/// presses, and coefficients of friction above 4 were seen only at some hundredths of a newton: Adams et al. 2013, DOI
+/// 10.1098/rsif.2012.0467).
+const MUCH_SHEARED_N: f64 = 1.0;
+const HOLDS: f64 = 0.25;
 /// Of steps from row to row, so many turn back where an LED is on and off by turns (assumed).
 const BY_TURNS: f64 = 0.95;
-/// So many times the range of all others beyond them is far (assumed).
+/// So many times the range of all others beyond them is far, and for a row whose neighbours lie among the others
+/// (assumed: no finger presses for one row alone).
 const FAR: f64 = 20.0;
+const FAR_ALONE: f64 = 3.0;
 /// More rows than this, and than this share, are no glitches: a finger that presses seldom (assumed).
 const MOST_GLITCHES: usize = 3;
 const SHARE_OF_GLITCHES: f64 = 0.0005;
@@ -115,17 +122,25 @@ pub(crate) fn alternating<'a>(photodiodes: impl Iterator<Item = (&'a str, &'a [f
 pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
     let of = |(name, values): (&str, &[f64])| {
         let [least, greatest] = without_spikes(values);
-        let far = FAR * (greatest - least);
-        let is_glitch =
-            |value: &&f64| value.is_finite() && far > 0.0 && (least - **value).max(**value - greatest) > far;
+        let range = greatest - least;
+        let beyond = |value: f64| (least - value).max(value - greatest);
+        let alone = |row: usize| {
+            let beside = [row.checked_sub(1), Some(row + 1)].into_iter().flatten();
+            !beside.filter_map(|row| values.get(row)).any(|value| beyond(*value) > 0.0)
+        };
+        let is_glitch = |row: usize, value: f64| {
+            let far = beyond(value) / range;
+            value.is_finite() && range > 0.0 && (far > FAR || far > FAR_ALONE && alone(row))
+        };
         let worst = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
-        let count = values.iter().filter(is_glitch).count();
+        let glitches = || values.iter().enumerate().filter(|(row, value)| is_glitch(*row, **value));
+        let count = glitches().count();
         let most = MOST_GLITCHES.max((SHARE_OF_GLITCHES * values.len() as f64) as usize);
         (values.len() >= SAMPLES && (1..=most).contains(&count)).then(|| {
             format!(
                 "{name} is {} in one of {count} row(s), far beyond all others, which go from {least:.3} to \
                  {greatest:.3}; leave such rows out if they are glitches: a model learns from them too",
-                short(values.iter().filter(is_glitch).fold(0.0, worst))
+                short(glitches().map(|(_, value)| value).fold(0.0, worst))
             )
         })
     };
@@ -168,6 +183,24 @@ fn not_zeroed(columns: &[(&str, &[f64])]) -> Vec<String> {
     columns.iter().filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N")).filter_map(of).collect()
 }
 
+/// What to say of more shear than a pressing finger holds, of forces.
+fn slips(columns: &[(&str, &[f64])]) -> Option<String> {
+    let of = |wanted: &str| columns.iter().find(|(name, _)| *name == wanted).map(|(_, values)| *values);
+    let fz = of("Fz_N")?;
+    let rows = columns.iter().map(|(_, values)| values.len()).min()?;
+    let sheared: Vec<&[f64]> = ["Fx_N", "Fy_N"].into_iter().filter_map(of).collect();
+    let shear = |row: usize| sheared.iter().map(|force| force[row].powi(2)).sum::<f64>().sqrt();
+    let much: Vec<usize> = (0..rows).filter(|&row| shear(row) > MUCH_SHEARED_N && fz[row].is_finite()).collect();
+    let slips = much.iter().filter(|&&row| -fz[row] < HOLDS * shear(row)).count();
+    (much.len() >= LOOSE_ROWS && 2 * slips > much.len()).then(|| {
+        format!(
+            "in {slips} of {} rows with a shear of more than {MUCH_SHEARED_N} N, Fz_N presses with less than {HOLDS} of \
+             it, by which no finger holds on: are two of the columns exchanged, or in other units?",
+            much.len()
+        )
+    })
+}
+
 /// What to say of a finger's force on the surface that rests elsewhere than at 0.
 pub(crate) fn resting(name: &str, forces_n: &[f64]) -> Option<String> {
     rest::not_at_zero(name, "N", RESTS_N, forces_n, Pressing::Negative)
@@ -177,6 +210,7 @@ pub(crate) fn resting(name: &str, forces_n: &[f64]) -> Option<String> {
 pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
     let columns: Vec<(&str, &[f64])> = columns.filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N" | "Fz_N")).collect();
     let mut doubts = not_zeroed(&columns);
+    doubts.extend(slips(&columns));
     for (name, values) in columns {
         if values.iter().filter(|value| value.is_finite()).count() < SAMPLES {
             continue;
@@ -254,6 +288,19 @@ mod tests {
     }
 
     #[test]
+    fn more_shear_than_a_finger_holds_is_doubted() {
+        let fz: Vec<f64> = (0..900).map(|k| -2.5 + 2.5 * (0.02 * f64::from(k)).cos()).collect();
+        let fx: Vec<f64> = fz.iter().zip(0..).map(|(fz, k)| 0.8 * fz * f64::from(k % 400 - 200).signum()).collect();
+        let said = |fx: &[f64], fz: &[f64]| {
+            let doubts = forces([("Fx_N", fx), ("Fz_N", fz)].into_iter());
+            doubts.into_iter().find(|doubt| doubt.contains("by which no finger holds on"))
+        };
+        assert_eq!(said(&fx, &fz), None);
+        assert!(said(&fz, &fx.iter().map(|fx| 0.1 * fx).collect::<Vec<_>>()).is_some(), "exchanged");
+        assert!(said(&fx, &fz.iter().map(|fz| 0.1 * fz).collect::<Vec<_>>()).is_some(), "another unit");
+    }
+
+    #[test]
     fn an_led_that_goes_on_and_off_is_seen_in_photodiodes_and_noise_is_none() {
         let noise = |k: usize| ((k * k * 7919 + 31 * k) % 1009) as f64 / 1009.0;
         let of = |count: usize, value: &dyn Fn(usize) -> f64| {
@@ -283,7 +330,16 @@ mod tests {
             "{said:?}"
         );
         assert!(of(&|k| if k % 400 == 7 { -5.0 } else { usual(k) })[0].contains("-5 in one of 3 row(s)"));
-        for quiet in [&usual as &dyn Fn(usize) -> f64, &|k| if k % 100 < 2 { 50.0 } else { usual(k) }, &|_| 1.0] {
+        // Ten times the greatest in one row alone, and in two, as of a finger that taps.
+        let press = |k: usize| 2.5 - 2.5 * (0.05 * k as f64).cos();
+        assert!(of(&|k| if k == 500 { 50.0 } else { press(k) })[0].contains("50 in one of 1 row(s)"));
+        for quiet in [
+            &usual as &dyn Fn(usize) -> f64,
+            &|k| if k % 100 < 2 { 50.0 } else { usual(k) },
+            &|_| 1.0,
+            &|k| if k / 2 == 250 { 50.0 } else { press(k) },
+            &|k| if k == 500 { 15.0 } else { press(k) },
+        ] {
             assert!(of(quiet).is_empty(), "{:?}", of(quiet));
         }
     }

@@ -49,6 +49,8 @@ pub use outputs::{FolderOutputs, end, picture};
 
 pub(crate) struct OpenedModels {
     pub(crate) predictors: Vec<Predictor>,
+    /// Each one's checksum.
+    sha256: Vec<String>,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -68,6 +70,12 @@ impl OpenedModels {
         }
     }
 
+    /// The checksum of the model that predicts a column.
+    pub(crate) fn sha256_of(&self, column: &str) -> Option<&str> {
+        let mut each = self.predictors.iter().zip(&self.sha256);
+        each.find_map(|(one, sha256)| one.target_names().iter().any(|name| name == column).then_some(sha256.as_str()))
+    }
+
     /// The only one.
     fn one(mut self) -> (Predictor, Vec<String>) {
         (self.predictors.remove(0), self.warnings)
@@ -75,7 +83,7 @@ impl OpenedModels {
 }
 
 pub(crate) fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
-    let mut opened = OpenedModels { predictors: Vec::new(), warnings: Vec::new() };
+    let mut opened = OpenedModels { predictors: Vec::new(), sha256: Vec::new(), warnings: Vec::new() };
     for path in paths {
         let text = crate::input::read_text(path).map_err(|why| PredictorError::Open { path: path.clone(), why })?;
         let found = Predictor::from_json(&text).map_err(|why| PredictorError::Model { path: path.clone(), why })?;
@@ -86,6 +94,7 @@ pub(crate) fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorEr
             ));
         }
         opened.predictors.push(found.predictor);
+        opened.sha256.push(found.sha256);
     }
     Ok(opened)
 }

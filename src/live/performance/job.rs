@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
+use lunula_live::performance::Course;
+
 use super::options::PerformanceOptions;
-use super::read::{Trials, read};
+use super::read::{Row, Trials, read};
 use super::report::{PerformanceFigures, PerformanceReport};
 use super::tables::{MEANS, ROWS, write_means, write_rows};
 use super::{PerformanceError, analysis, figures};
@@ -77,7 +79,7 @@ pub fn run(
         })?;
     }
     let left_out = left_out(plan(Some(outputs)));
-    let (notes, warnings) = (notes(&figures, outputs), warnings(&trials));
+    let (notes, warnings) = (notes(&figures, outputs), warnings(&trials, &course));
     let report = Report {
         left_out,
         notes,
@@ -104,8 +106,11 @@ fn baseline(options: &PerformanceOptions, trials: &Trials, name: &str) -> Result
 /// A decision of more seconds was logged in another unit (assumed: those of appendix C take 0.3 to 3 s).
 const LONG_S: f64 = 100.0;
 
+/// Driving alone is so little of a trial where its speed is in another unit (assumed: in appendix C it is most of it).
+const LITTLE: f64 = 0.01;
+
 /// What a person may have slipped in.
-fn warnings(trials: &Trials) -> Vec<String> {
+fn warnings(trials: &Trials, course: &Course) -> Vec<String> {
     let name = |(what, names): (&str, &[String])| twins(what, names.iter().map(String::as_str));
     let named = [("operators", &trials.operators[..]), ("methods", &trials.methods[..])].into_iter().filter_map(name);
     // One operator's log may be of another program.
@@ -114,35 +119,67 @@ fn warnings(trials: &Trials) -> Vec<String> {
         let median_s = median_of(own.map(|row| row.decision_s)).filter(|median| *median > LONG_S)?;
         Some(format!("half of the decisions of {operator} took {median_s:.0} s or more: is time_s in ms?"))
     });
-    named.chain(long).chain(copied(trials)).collect()
+    let median_s = median_of(trials.rows.iter().map(|row| row.time_s));
+    let little = median_s.filter(|median_s| course.shortest_s() < LITTLE * median_s).map(|median_s| {
+        format!(
+            "driving alone takes {:.3} s of {median_s:.0} s in the median of all trials: are --path-m in metres and \
+             --speed-mps in metres a second?",
+            course.shortest_s()
+        )
+    });
+    let operators = copied(&trials.operators, trials, |row| (row.operator, row.method));
+    let methods = copied(&trials.methods, trials, |row| (row.method, row.operator));
+    named.chain(long).chain(little).chain(cumulative(trials, course)).chain(operators).chain(methods).collect()
 }
 
-/// Operators with the same trials and times, as a log that was copied under another name has.
-fn copied(trials: &Trials) -> Vec<String> {
+/// Operators, or methods, with the same trials and times, as a log that was copied under another name has; `places` are
+/// a row's among `names`, and among the others.
+fn copied(names: &[String], trials: &Trials, places: impl Fn(&Row) -> (usize, usize)) -> Vec<String> {
     let of = |k: usize| {
-        let own = trials.rows.iter().filter(move |row| row.operator == k);
-        let mut times: Vec<(usize, u32, u64)> = own.map(|row| (row.method, row.trial, row.time_s.to_bits())).collect();
+        let own = trials.rows.iter().map(|row| (places(row), row)).filter(|((own, _), _)| *own == k);
+        let mut times: Vec<(usize, u32, u64)> =
+            own.map(|((_, other), row)| (other, row.trial, row.time_s.to_bits())).collect();
         times.sort_unstable();
         times
     };
     let mut by_times: BTreeMap<Vec<(usize, u32, u64)>, Vec<&str>> = BTreeMap::new();
-    for (k, operator) in trials.operators.iter().enumerate() {
-        by_times.entry(of(k)).or_default().push(operator);
+    for (k, name) in names.iter().enumerate() {
+        by_times.entry(of(k)).or_default().push(name);
     }
-    let copies = by_times.into_iter().filter(|(times, operators)| times.len() >= COPIED && operators.len() > 1);
+    let copies = by_times.into_iter().filter(|(times, names)| times.len() >= COPIED && names.len() > 1);
     copies
-        .map(|(times, operators)| {
-            format!(
-                "{} have the same times in all {} trials, and count apart: keep one",
-                operators.join(", "),
-                times.len()
-            )
+        .map(|(times, names)| {
+            format!("{} have the same times in all {} trials, and count apart: keep one", names.join(", "), times.len())
         })
         .collect()
 }
 
-/// So many equal times are no chance.
+/// So many equal times, or steps of a whole drive, are no chance.
 const COPIED: usize = 3;
+
+/// Times that go on from trial to trial, by a whole drive at least, as those of a clock that is never reset.
+fn cumulative(trials: &Trials, course: &Course) -> Option<String> {
+    let mut courses: BTreeMap<(usize, usize), BTreeMap<u32, f64>> = BTreeMap::new();
+    for row in &trials.rows {
+        courses.entry((row.operator, row.method)).or_default().insert(row.trial, row.time_s);
+    }
+    let goes_on = |times_s: &BTreeMap<u32, f64>| {
+        let times_s: Vec<f64> = times_s.values().copied().collect();
+        times_s.len() > COPIED && times_s.windows(2).all(|pair| pair[1] - pair[0] >= course.shortest_s())
+    };
+    let named = |(operator, method): &(usize, usize)| {
+        format!("{} with {}", trials.operators[*operator], trials.methods[*method])
+    };
+    let names: Vec<String> =
+        courses.iter().filter(|(_, times_s)| goes_on(times_s)).map(|(course, _)| named(course)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "each trial of {} took a whole drive longer than the one before: is time_s counted on from the first \
+             trial's begin? Write how long each took",
+            names.join(", ")
+        )
+    })
+}
 
 /// What was chosen or could not be known.
 fn notes(figures: &PerformanceFigures, outputs: &FolderOutputs) -> Vec<String> {

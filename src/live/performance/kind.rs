@@ -30,7 +30,7 @@ impl Job for PerformanceOptions {
             Part::if_wanted(PICTURES, ""),
         ],
     )
-    .revision(3);
+    .revision(4);
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(plan(Some(&outputs(Path::new(""), demand))))

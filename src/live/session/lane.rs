@@ -11,6 +11,7 @@ use super::feed::{Feed, is_away};
 use super::open::source_fault;
 use super::outputs::Outputs;
 use super::outputs::samples::Samples;
+use super::sensor::PHOTODIODES;
 use crate::live::error::LiveError;
 use crate::live::onlooker::Onlooker;
 use crate::log::LogReading;
@@ -279,6 +280,9 @@ impl Work {
             }
         };
         decide.row(row, common_s, kept, &mut shared.outputs)?;
+        if decide.answers.as_mut().is_some_and(|answers| std::mem::take(&mut answers.sensor.stops)) {
+            (shared.tell)(&format!("warning: {}{PHOTODIODES} stand still at {common_s:.3} s", self.label));
+        }
         shared.heard(decide);
         if let (Some(seconds), Some([from_s, to_s])) = (shared.seconds, decide.span_s) {
             shared.ends |= to_s - from_s >= seconds;

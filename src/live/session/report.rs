@@ -12,6 +12,7 @@ use super::feed::Feed;
 use super::lane::{Lane, Shared};
 use super::outputs::pointer::{PointerCounts, PointerOutput};
 use super::outputs::switch::{SwitchCounts, SwitchOutput};
+use super::sensor::PHOTODIODES;
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
@@ -213,6 +214,7 @@ impl SessionFigures {
     /// Adds what was made of a finger's rows, and ends its recording. Returns what to doubt of it.
     fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) -> Vec<String> {
         let Decide { samples, answers, rows, .. } = decide;
+        let mut doubts = Vec::new();
         self.rows += rows;
         if let Some(answers) = answers {
             let sensor = &answers.sensor;
@@ -239,10 +241,11 @@ impl SessionFigures {
                 _ => None,
             };
             failed.extend(nothing.map(|why| format!("no row is answered: {why}")));
+            doubts.extend(sensor.still.doubt(PHOTODIODES));
         }
-        let Some(mut samples) = samples else { return Vec::new() };
+        let Some(mut samples) = samples else { return doubts };
         failed.extend(samples.end_forces().err().map(|why| why.to_string()));
-        let doubts = samples.doubts();
+        doubts.extend(samples.doubts());
         if let Some(without) = samples.without_force() {
             *self.rows_without_force.get_or_insert(0) += without;
         }

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use lunula_live::latency::Latency as Times;
 use lunula_live::source::{Address, HostClock, MOST_WAITED, Place, Ready, wait};
-use lunula_live::switch::Switch;
+use lunula_live::switch::{Switch, compared};
 
 use super::decide::Plan;
 use super::feed::Feed;
@@ -23,7 +23,7 @@ use crate::live::error::LiveError;
 use crate::live::onlooker::Attended;
 use crate::live::options::{LiveOptions, SessionFiles, StreamOptions};
 use crate::live::steps::{live_steps, record_steps};
-use crate::live::switch::read_switch;
+use crate::live::switch::{of_another_model, read_switch};
 use crate::live::view::{Counts, Health, View};
 use crate::predictor::{Answering, open_models};
 use crate::stages::left_out;
@@ -62,7 +62,12 @@ pub fn live(
     let mut header: Option<Vec<String>> = None;
     for finger in &all {
         let opened = open_models(&finger.models)?.of_samples()?;
-        for warning in opened.warnings {
+        let switch = finger.switch.as_deref().map(read_switch).transpose()?;
+        let other = switch.as_ref().and_then(|switch| {
+            let model_sha256 = opened.sha256_of(compared(switch.column.as_deref()).0);
+            of_another_model(switch, model_sha256)
+        });
+        for warning in opened.warnings.into_iter().chain(other) {
             if !warnings.contains(&warning) {
                 (readers.tell)(&format!("warning: {warning}"));
                 warnings.push(warning);
@@ -78,7 +83,7 @@ pub fn live(
             );
             return Err(LiveError::Request(what));
         }
-        let switch = finger.switch.as_deref().map(read_switch).transpose()?.map(Switch::new);
+        let switch = switch.map(Switch::new);
         plans.push(Plan { answering: Some(answering), switch, ..finger.plan(options.answer.keep_faults) });
     }
     if let (Some(mouse), Some(plan)) = (&files.mouse, plans.first_mut()) {

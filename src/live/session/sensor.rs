@@ -8,8 +8,11 @@ use lunula_live::wire::Row;
 use lunula_predictor::Contact;
 
 use super::columns::StreamColumns;
-use crate::log::{AmbientError, LogReading, Preceding, Statuses, Verdict};
+use crate::log::{AmbientError, LogReading, Preceding, Statuses, Still, Verdict};
 use crate::predictor::Answering;
+
+/// What a sensor's channels are called in what is said of them.
+pub(crate) const PHOTODIODES: &str = "the photodiodes that a model reads";
 
 /// A sensor and its models.
 #[derive(Debug)]
@@ -31,6 +34,9 @@ pub(crate) struct Sensor {
     keep_faults: bool,
     volts: Vec<f64>,
     answer: Vec<f64>,
+    /// Whether its photodiodes stand still, and whether they have just begun to.
+    pub(crate) still: Still,
+    pub(crate) stops: bool,
     /// Lit rows, unlit ones, and those that do not say.
     pub(crate) lit: u64,
     pub(crate) unlit: u64,
@@ -71,6 +77,8 @@ impl Sensor {
         Ok(Self {
             volts: vec![f64::NAN; inputs.len()],
             answer: vec![f64::NAN; answering.columns().len()],
+            still: Still::new(inputs.len()),
+            stops: false,
             answering,
             preceding,
             places,
@@ -127,6 +135,10 @@ impl Sensor {
         }
         let status = self.statuses.as_mut().map(|(at, statuses)| statuses.read_bytes(&row.texts[*at]));
         let mut faulty = status == Some(Verdict::Fault);
+        // One photodiode alone may keep its value while a finger rests.
+        if self.volts.len() > 1 && (self.preceding.is_none() || row.lit == Some(true)) {
+            self.stops |= self.still.push(row.time_s, self.volts.iter().copied());
+        }
         if let Some(preceding) = &mut self.preceding {
             if begins {
                 preceding.forget();

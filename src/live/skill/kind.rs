@@ -35,7 +35,7 @@ impl Job for SkillOptions {
         ],
         &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
     )
-    .revision(6);
+    .revision(7);
 
     fn checked(self) -> Result<Self, OptionFault> {
         let faults = self.faults();

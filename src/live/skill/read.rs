@@ -5,7 +5,7 @@ use lunula_live::spread::Spread;
 
 use super::rows::{self, FORCE, Finger, Gate, Rows};
 use super::{SkillError, SkillRecording};
-use crate::log::doubts;
+use crate::log::{Still, doubts};
 
 /// More trials of a recording are something else: a column was mistaken.
 const MOST_TRIALS: usize = 10_000;
@@ -100,7 +100,9 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
             in_order(&rows, &own, recording)?;
             Ok(of_finger(&rows, finger, &own))
         });
-        Ok(Trial { subject, trial, fingers: fingers.collect::<Result<_, SkillError>>()? })
+        let mut fingers = fingers.collect::<Result<Vec<FingerTrial>, SkillError>>()?;
+        copies(&mut fingers);
+        Ok(Trial { subject, trial, fingers })
     };
     Ok(Recording {
         trials: trials.into_iter().map(one).collect::<Result<_, SkillError>>()?,
@@ -138,6 +140,35 @@ fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<()
     Err(SkillError::recording(&recording.path, &what))
 }
 
+/// Where a finger presses with less than this nothing is said of a force that stands still, newtons (assumed).
+const PRESSES_N: f64 = 0.1;
+
+/// Fingers whose forces are another's to the bit.
+fn copies(fingers: &mut [FingerTrial]) {
+    for k in 1..fingers.len() {
+        let (before, [finger, ..]) = fingers.split_at_mut(k) else { return };
+        let own = &finger.force.force_n;
+        let same = |other: &&FingerTrial| {
+            let other = &other.force.force_n;
+            own.len() == other.len() && own.iter().zip(other).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        if own.iter().any(|force_n| *force_n > PRESSES_N)
+            && let Some(other) = before.iter().find(same)
+        {
+            finger.doubts.push(format!("{FORCE} is that of {} in every row: is it a copy of its column?", other.name));
+        }
+    }
+}
+
+/// What to say of a force that keeps its value while a finger presses.
+fn stands(time_s: &[f64], force_n: &[f64]) -> Option<String> {
+    let mut still = Still::new(1);
+    for (time_s, force_n) in time_s.iter().zip(force_n).filter(|(_, force_n)| **force_n > PRESSES_N) {
+        still.push(*time_s, std::iter::once(*force_n));
+    }
+    still.doubt(FORCE)
+}
+
 fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
     let gate = |row: usize| finger.gate.get(row).copied();
     let pressing = |row: &usize| match gate(*row) {
@@ -161,7 +192,11 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
     let time_s: Vec<f64> = own.iter().map(|row| rows.time_s[*row]).collect();
     FingerTrial {
         name: finger.name.clone(),
-        doubts: [doubts::forces(force()), doubts::glitches(force()), doubts::cut_off(FORCE, &fz_n)].concat(),
+        doubts: [doubts::forces(force()), doubts::glitches(force()), doubts::cut_off(FORCE, &fz_n)]
+            .into_iter()
+            .flatten()
+            .chain(stands(&time_s, &force_n))
+            .collect(),
         angles: finger.angles.iter().filter_map(angle).collect(),
         force: Force { time_s, force_n, lifted },
     }

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::figures::draw_delays;
 use super::flattery::flattery;
 use super::options::ContactOptions;
-use super::report::{elsewhere, note};
+use super::report::{elsewhere, note, of_another_model};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -55,8 +55,9 @@ pub fn evaluate_switch(
     let config = read_switch(switch)?;
     let FolderOutputs { folder: out, rows, figures, report: with_report } = outputs;
     let staging = Staging::new(out)?;
-    let Traces { recordings: read, traces, led, mut warnings, notes, failed } =
+    let Traces { recordings: read, traces, led, model_sha256, mut warnings, notes, failed } =
         stages.time("predict", || read_traces(inputs, config.column.as_deref(), options, watch))?;
+    warnings.extend(of_another_model(&config, model_sha256.as_deref()));
     warnings.extend(stages.time("compare with training", || flattery(inputs, options))?);
     let all = stages.time("switch", || Evaluation::of(&config, &traces));
     watch.go_on()?;
@@ -78,7 +79,7 @@ pub fn evaluate_switch(
     };
     note(&mut report, &all, inputs, options, led);
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
-    report.warnings.extend(elsewhere(&config, &read, &traces));
+    report.warnings.extend(elsewhere(&read, &traces, &found));
     if *rows {
         let at = staging.place("presses.csv")?;
         write_presses(&at, &out.join("presses.csv"), &read, &found)?;

@@ -56,7 +56,7 @@ impl Job for TuneOptions {
         &[RECORDINGS, MODEL],
         &[Part::new("switch", SWITCH), Part::if_wanted(PICTURES, "")],
     )
-    .revision(5);
+    .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(tune_plan(recordings(inputs), demand.wants(PICTURES)))
@@ -82,7 +82,7 @@ impl Job for ContactOptions {
         &[RECORDINGS, MODEL, Role::new("switch", Takes::One, "a switch: switch.toml")],
         &[Part::new("presses", "presses.csv"), Part::if_wanted(PICTURES, "")],
     )
-    .revision(5);
+    .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(evaluate_plan(recordings(inputs), true, demand.wants(PICTURES)))

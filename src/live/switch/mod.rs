@@ -13,6 +13,7 @@ mod tune;
 pub use evaluate::{EvaluateSwitchFigures, EvaluateSwitchReport, evaluate_plan, evaluate_switch, read_switch};
 pub(crate) use options::FALSE_PER_HOUR;
 pub use options::{ContactOptions, OutsideChoice, TuneOptions};
+pub(crate) use report::of_another_model;
 pub use report::{CurvePoint, TuneFigures, TuneReport};
 pub use traces::SwitchInputs;
 pub(crate) use traces::{Traces, read_traces};

@@ -1,8 +1,6 @@
 //! What the choice of a switch reports, and what any report on a switch says of its recordings.
 
-use std::slice;
-
-use lunula_live::switch::{Candidate, Evaluation, Fate, Match, NoiseRate, SwitchConfig, Trace, any_contact, matches};
+use lunula_live::switch::{Candidate, Evaluation, Fate, Match, NoiseRate, SwitchConfig, Trace, any_contact};
 use serde::Serialize;
 
 use super::options::ContactOptions;
@@ -97,34 +95,47 @@ const LONG_S: f64 = 1.0;
 /// Fewer contacts say nothing of that.
 const FEWEST: usize = 3;
 
-/// That what is called contact is not what a switch was pressed by, in all recordings or in some; `names` are theirs.
-pub(super) fn elsewhere(switch: &SwitchConfig, names: &[String], traces: &[Trace]) -> Vec<String> {
+/// That what is called contact is not what a switch was pressed by, in all recordings or in some; `names` are theirs,
+/// `found` what became of its presses there.
+pub(super) fn elsewhere(names: &[String], traces: &[Trace], found: &[Vec<Match>]) -> Vec<String> {
     if let Err(why) = any_contact(traces) {
         return vec![why.to_string()];
     }
-    let of = |(name, trace): (&String, &Trace)| Some(format!("{name}: {}", elsewhere_in(switch, trace)?));
-    names.iter().zip(traces).filter_map(of).collect()
+    let of = |(name, found): (&String, &Vec<Match>)| Some(format!("{name}: {}", elsewhere_in(found)?));
+    names.iter().zip(found).filter_map(of).collect()
 }
 
-fn elsewhere_in(switch: &SwitchConfig, trace: &Trace) -> Option<String> {
-    let all = Evaluation::of(switch, slice::from_ref(trace));
-    if all.presses < FEWEST {
+fn elsewhere_in(found: &[Match]) -> Option<String> {
+    let of = |fate| found.iter().filter(move |one| one.fate == fate);
+    let (own, missed) = (of(Fate::True).count(), of(Fate::Missed).count());
+    let contacts = own + missed;
+    if contacts < FEWEST {
         return None;
     }
-    let judged = all.decisions - all.not_judged;
-    if 2 * all.missed > all.presses && 2 * all.false_switches as usize > judged {
+    let judged = found.len() - missed;
+    let wrong = judged - own;
+    if 2 * missed > contacts && 2 * wrong > judged {
         return Some(format!(
-            "{} of {} contacts are missed and {} of {judged} presses are false: is contact that of this recording, on \
-             its clock, and the right way round?",
-            all.missed, all.presses, all.false_switches
+            "{missed} of {contacts} contacts are missed and {wrong} of {judged} presses are false: is contact that of \
+             this recording, on its clock, and the right way round?",
         ));
     }
-    let found = matches(switch, trace);
-    let own = || found.iter().filter(|one| one.fate == Fate::True);
     let behind = |one: &&Match| {
         one.contact.is_some_and(|contact| one.press_s >= contact.end_s && one.press_s > contact.start_s + LONG_S)
     };
-    let (behind, own) = (own().filter(behind).count(), own().count());
+    let behind = of(Fate::True).filter(behind).count();
     (2 * behind > own)
         .then(|| format!("{behind} of {own} presses begin when their contact is over: is contact the right way round?"))
+}
+
+/// That a switch's thresholds were chosen on the predictions of another model than this.
+pub(crate) fn of_another_model(switch: &SwitchConfig, model_sha256: Option<&str>) -> Option<String> {
+    let (chosen_on, this) = switch.model_sha256.as_deref().zip(model_sha256)?;
+    (chosen_on != this).then(|| {
+        format!(
+            "the switch was chosen on predictions of another model (sha256 {:.8}.. in its file, {this:.8}.. in this \
+             model's): its thresholds need not fit; choose it again with `lunula switch tune`",
+            chosen_on
+        )
+    })
 }

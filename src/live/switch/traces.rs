@@ -4,13 +4,13 @@ use std::cell::RefCell;
 use std::iter;
 use std::path::PathBuf;
 
-use lunula_live::switch::{LONGEST_GAP_S, Trace};
+use lunula_live::switch::{LONGEST_GAP_S, Trace, compared};
 use lunula_predictor::{Gate, Predictor};
 
 use super::options::ContactOptions;
 use crate::job::Watch;
 use crate::live::error::LiveError;
-use crate::live::session::{Sensor, StreamColumns, each_row};
+use crate::live::session::{PHOTODIODES, Sensor, StreamColumns, each_row};
 use crate::log::{Log, LogError, doubts};
 use crate::predictor::{Answering, DataFile, extrapolated, open_models};
 
@@ -39,6 +39,8 @@ pub(crate) struct Traces {
     pub(crate) traces: Vec<Trace>,
     /// Whether one of them says when the LED was on.
     pub(crate) led: bool,
+    /// The checksum of the model that predicts what the switch compares.
+    pub(crate) model_sha256: Option<String>,
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
     /// Recordings that could not be read, each with why.
@@ -57,7 +59,8 @@ pub(crate) fn read_traces(
 ) -> Result<Traces, LiveError> {
     let SwitchInputs { recordings, models } = inputs;
     let opened = open_models(models)?.of_samples()?;
-    let mut all = Traces { warnings: opened.warnings, ..Traces::default() };
+    let model_sha256 = opened.sha256_of(compared(column).0).map(str::to_owned);
+    let mut all = Traces { model_sha256, warnings: opened.warnings, ..Traces::default() };
     for (k, recording) in recordings.iter().enumerate() {
         watch.go_on()?;
         (watch.tick)(k as u64, Some(recordings.len() as u64));
@@ -101,7 +104,7 @@ fn read_trace(
     // The gate only says what is touching, which is not asked for here.
     let gate = Gate::new(1.0, 0.0, 0.0).map_err(|why| refused(why.to_string()))?;
     let answering = Answering::new(models.to_vec(), gate, false)?;
-    let (name, sign) = column.map_or(("Fz_N", -1.0), |name| (name, 1.0));
+    let (name, sign) = compared(column);
     let at = answering.columns().iter().position(|one| one == name).ok_or_else(|| {
         refused(format!("the models predict {}, not {name}; name a model of it", answering.columns().join(", ")))
     })?;
@@ -169,6 +172,7 @@ fn read_trace(
         watch,
     )?;
     said.notes.extend(notes);
+    said.warnings.extend(sensor.into_inner().and_then(|(sensor, _)| sensor.still.doubt(PHOTODIODES)));
     match piece {
         Some((piece, log)) if log.time_s.len() != times.len() => {
             return Err(refused(format!(

@@ -8,7 +8,7 @@ use std::iter;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use lunula_live::switch::{Goal, SwitchConfig, crossings_per_hour, tune};
+use lunula_live::switch::{Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
 
 use super::figures::draw_curve;
 use super::flattery::flattery;
@@ -50,7 +50,7 @@ pub fn tune_switch(
     let report_at = report.then(|| beside(out, ".run.json"));
     let mut places = Places::not_over(inputs.recordings.iter().map(|file| &file.path).chain(&inputs.models));
     places.check(std::iter::once(out).chain(&report_at))?;
-    let Traces { recordings: read, traces, led, mut warnings, notes, failed } =
+    let Traces { recordings: read, traces, led, model_sha256, mut warnings, notes, failed } =
         stages.time("predict", || read_traces(inputs, options.column.as_deref(), &options.truth, watch))?;
     warnings.extend(stages.time("compare with training", || flattery(inputs, &options.truth))?);
     let goal = Goal {
@@ -64,7 +64,7 @@ pub fn tune_switch(
         LiveError::Request(iter::once(why.to_string()).chain(warnings.clone()).collect::<Vec<_>>().join("; "))
     })?;
     watch.go_on()?;
-    let switch = SwitchConfig { column: options.column.clone(), ..tuned.chosen.config.clone() };
+    let switch = SwitchConfig { column: options.column.clone(), model_sha256, ..tuned.chosen.config.clone() };
     let mut report = Report {
         warnings,
         notes,
@@ -89,7 +89,8 @@ pub fn tune_switch(
     note(&mut report, &tuned.chosen.evaluation, inputs, &options.truth, led);
     let weak = weak(&report, options);
     report.warnings.extend(weak);
-    let elsewhere = elsewhere(&report.switch, &report.recordings, &traces);
+    let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&report.switch, trace)).collect();
+    let elsewhere = elsewhere(&report.recordings, &traces, &found);
     report.warnings.extend(elsewhere);
     let text = toml::to_string(&report.switch).map_err(|why| LiveError::Request(why.to_string()))?;
     places.write(out, &text)?;

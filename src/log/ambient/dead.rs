@@ -1,7 +1,7 @@
 //! Channels that show nothing, or nothing for a while.
 //!
 //! Warned of, and not left out: a channel may be dead to the LED's light and still be wanted. Looked at are the lit
-//! samples as they were recorded.
+//! samples as they were recorded: [`warn`] at those of a channel, [`Still`] at those of all of a sensor's as they come.
 
 /// A channel with so few values is called dead; its samples have to be [`SAMPLES`] at least.
 const VALUES: usize = 3;
@@ -56,5 +56,103 @@ pub(super) fn warn(name: &str, time_s: &[f64], values: &[f64], warnings: &mut Ve
             last.0,
             first.1
         ));
+    }
+}
+
+/// Samples all of whose channels stand still: as where what logs them repeats its last one.
+#[derive(Debug, Clone)]
+pub(crate) struct Still {
+    last: Vec<f64>,
+    run: Stretch,
+    /// Whether the run lasts too long.
+    is_long: bool,
+    /// Samples and runs before it that did not.
+    usual: [u64; 2],
+    /// Runs that did.
+    stretches: u64,
+    longest: Option<Stretch>,
+}
+
+/// A run of equal samples.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stretch {
+    samples: u64,
+    first_s: f64,
+    last_s: f64,
+}
+
+impl Still {
+    /// Of so many channels.
+    pub(crate) fn new(channels: usize) -> Self {
+        let (last, run) = (vec![f64::NAN; channels], Stretch::default());
+        Self { last, run, is_long: false, usual: [0; 2], stretches: 0, longest: None }
+    }
+
+    /// A lit sample; whether the first stretch has just become one.
+    pub(crate) fn push(&mut self, time_s: f64, values: impl Iterator<Item = f64>) -> bool {
+        let mut same = true;
+        for (last, value) in self.last.iter_mut().zip(values) {
+            same &= std::mem::replace(last, value) == value;
+        }
+        if !same {
+            if !std::mem::take(&mut self.is_long) && self.run.samples > 0 {
+                self.usual = [self.usual[0] + self.run.samples, self.usual[1] + 1];
+            }
+            self.run = Stretch { samples: 1, first_s: time_s, last_s: time_s };
+            return false;
+        }
+        (self.run.samples, self.run.last_s) = (self.run.samples + 1, time_s);
+        let [samples, runs] = self.usual;
+        if self.run.samples < STUCK as u64 || LONGER * samples as f64 > (self.run.samples * runs) as f64 {
+            return false;
+        }
+        if self.longest.is_none_or(|longest| self.run.samples >= longest.samples) {
+            self.longest = Some(self.run);
+        }
+        let begins = !std::mem::replace(&mut self.is_long, true);
+        self.stretches += u64::from(begins);
+        begins && self.stretches == 1
+    }
+
+    /// What to say of them, which are called `what`.
+    pub(crate) fn doubt(&self, what: &str) -> Option<String> {
+        let Stretch { samples, first_s, last_s } = self.longest?;
+        Some(format!(
+            "{what} keep(s) all values in {} stretch(es), the longest {samples} samples from {first_s:.3} to \
+             {last_s:.3} s: does what logs them repeat its last sample? All that follows from them there is of it",
+            self.stretches
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Still;
+
+    /// What is said of a stream at 25 Hz, and at which of its samples the first time.
+    fn of(samples: usize, value: impl Fn(usize) -> f64) -> (Option<String>, Vec<usize>) {
+        let mut still = Still::new(2);
+        let began = (0..samples).filter(|&k| still.push(0.04 * k as f64, [value(k), 1.0].into_iter())).collect();
+        (still.doubt("P1"), began)
+    }
+
+    #[test]
+    fn a_sensor_that_stands_still_is_seen_at_once() {
+        let alive = |k: usize| (k as f64).sin();
+        assert_eq!(of(1000, alive), (None, Vec::new()));
+        // What a faster clock writes down four times, and a photodiode of few bits, do not stand still.
+        assert_eq!(of(1000, |k| alive(k / 4)), (None, Vec::new()));
+        assert_eq!(of(1000, |k| (4.0 * alive(k / 10)).round()), (None, Vec::new()));
+        // A missing value is no equal one.
+        assert_eq!(of(1000, |k| if k < 500 { alive(k) } else { f64::NAN }), (None, Vec::new()));
+        let (doubt, began) = of(1000, |k| alive(k.clamp(0, 400) + k.saturating_sub(700)));
+        assert_eq!(began, [449]);
+        assert!(doubt.unwrap().contains("in 1 stretch(es), the longest 301 samples from 16.000 to 28.000 s"));
+        let (doubt, began) = of(1000, |_| 3.0);
+        assert_eq!(began, [49]);
+        assert!(doubt.unwrap().contains("the longest 1000 samples"));
+        let (doubt, began) = of(1000, |k| if k % 300 < 200 { alive(k) } else { 3.0 });
+        assert_eq!(began, [249]);
+        assert!(doubt.unwrap().contains("in 3 stretch(es), the longest 100 samples from 32.000"));
     }
 }

@@ -61,7 +61,12 @@ pub(crate) struct Angles {
     metric: Metric,
     lengths: Lengths,
     frozen: Frozen,
+    /// Of each joint, frames in which its segments overlap, and all.
+    overlaps: Vec<[u64; 2]>,
 }
+
+/// Below so many frames of a joint nothing is said of its segments' order.
+const FRAMES: u64 = 20;
 
 /// Two markers nearer to each other than this many standard errors of their distance have no direction.
 const APART_SD: f64 = 3.0;
@@ -83,6 +88,7 @@ impl Angles {
             metric: Metric::new(layout.segments.len()),
             lengths: Lengths::new(layout.segments.len()),
             frozen: Frozen::default(),
+            overlaps: vec![[0; 2]; layout.joints.len()],
             layout: layout.clone(),
         }
     }
@@ -95,7 +101,21 @@ impl Angles {
             format!("segment {} ({a} to {b}) {text}", segment.name)
         };
         let lengths = self.lengths.changing().into_iter().map(named);
-        self.metric.doubt().into_iter().chain(lengths).chain(self.frozen.doubt()).collect()
+        self.metric.doubt().into_iter().chain(lengths).chain(self.frozen.doubt()).chain(self.overlapping()).collect()
+    }
+
+    /// What to say of joints whose segments lie over each other.
+    fn overlapping(&self) -> impl Iterator<Item = String> {
+        self.layout.joints.iter().zip(&self.overlaps).filter_map(|(joint, &[behind, all])| {
+            let [[_, end], [begin, _]] = joint.segments.map(|segment| self.layout.segments[segment].markers);
+            (all >= FRAMES && 2 * behind > all).then(|| {
+                format!(
+                    "the distal segment of {} begins (`{}`) before its proximal one ends (`{}`) in {behind} of {all} \
+                     frames: are the places of these markers exchanged in [start], or their names in [segments]?",
+                    joint.name, self.layout.markers[begin].name, self.layout.markers[end].name
+                )
+            })
+        })
     }
 
     /// The angles of the next frame, one sight a marker of the layout.
@@ -145,10 +165,15 @@ impl Angles {
             .layout
             .joints
             .iter()
-            .zip(&mut self.last_rad)
-            .map(|(joint, last)| {
+            .zip(self.last_rad.iter_mut().zip(&mut self.overlaps))
+            .map(|(joint, (last, [behind, all]))| {
                 let [a, b] = joint.segments.map(|s| directions[s].as_ref());
                 let (a, b) = (a?, b?);
+                let [[_, end], [begin, _]] = joint.segments.map(|s| self.layout.segments[s].markers);
+                let gap = (spots[end].as_ref()?.at_px, spots[begin].as_ref()?.at_px);
+                // However far it bends, a finger's gap points along both of its segments taken together.
+                *behind += u64::from([a, b].map(|one| one.along(gap)).iter().sum::<f64>() < 0.0);
+                *all += 1;
                 let rad = nearest_branch(sign * (b.rad - a.rad) - joint.zero_rad, *last);
                 *last = Some(rad);
                 let pairs = joint.segments.map(|s| self.layout.segments[s].markers);
@@ -191,6 +216,11 @@ struct Direction {
 }
 
 impl Direction {
+    /// How far it is from one place to another along it.
+    fn along(&self, (from, to): ([f64; 2], [f64; 2])) -> f64 {
+        (to[0] - from[0]) * self.rad.cos() + (to[1] - from[1]) * self.rad.sin()
+    }
+
     /// `None` where the two can't be distinguished.
     fn between(proximal: &Spot, distal: &Spot) -> Option<Self> {
         let [dx, dy] = [distal.at_px[0] - proximal.at_px[0], distal.at_px[1] - proximal.at_px[1]];

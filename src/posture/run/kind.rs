@@ -88,7 +88,7 @@ impl Job for PostureJob {
             Part::if_wanted(PICTURES, "joints-angles.png"),
         ],
     )
-    .revision(6);
+    .revision(7);
 
     fn depends_on(&self, _said: &Said, demand: &Demand) -> serde_json::Value {
         let made: Vec<&str> = [TRACKS, OVERLAY, PICTURES].into_iter().filter(|part| demand.wants(part)).collect();

@@ -54,6 +54,7 @@ impl<'a> Splitter<'a> {
     pub(super) fn finish(self, recordings: &mut Vec<Recording>, warnings: &mut Vec<String>) {
         let DataFile { path, name: file, session: own_session, subject: own_subject } = self.called;
         let several = self.starts.len() > 1;
+        let (mut other_session, mut other_subject) = (false, false);
         for (k, &(start, group)) in self.starts.iter().enumerate() {
             let end = self.starts.get(k + 1).map_or(self.taken, |next| next.0);
             let [session, subject, trajectory] = group.map(|g| self.source.groups[g].1.clone()).unwrap_or_default();
@@ -62,6 +63,20 @@ impl<'a> Splitter<'a> {
                 Some(own) => own.clone(),
                 None => file.clone(),
             };
+            for (key, said, own, warned) in [
+                ("session", &session, own_session, &mut other_session),
+                ("subject", &subject, own_subject, &mut other_subject),
+            ] {
+                let other = own.as_ref().filter(|own| !said.is_empty() && *own != said && !*warned);
+                warnings.extend(other.map(|own| {
+                    *warned = true;
+                    format!(
+                        "{}: its column `{key}` says `{said}`, which is taken, and it was given as that of `{own}`: is \
+                         it in the right place?",
+                        path.display()
+                    )
+                }));
+            }
             let (session, subject) = (or_own(session, own_session), or_own(subject, own_subject));
             let name = match (trajectory.is_empty(), several) {
                 (false, _) => format!("{file} ({trajectory})"),

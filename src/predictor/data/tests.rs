@@ -192,6 +192,13 @@ fn recordings_follow_session_subject_trajectory_and_time() {
     );
     assert_eq!(read.warnings.len(), 1, "{:?}", read.warnings);
     assert!(read.warnings[0].contains("goes back once from 1 to 0.5 s"), "{:?}", read.warnings);
+    // Given as another's, as by a pipeline whose folder is another subject's.
+    let given = |subject: &str| {
+        let file = DataFile { subject: Some(subject.to_owned()), ..DataFile::from(path.clone()) };
+        read_files(&[file], &angle()).unwrap().warnings
+    };
+    assert!(given("zoe").iter().any(|said| said.contains("column `subject` says `anna`, which is taken")));
+    assert_eq!(given("anna").iter().filter(|said| said.contains("says `bert`")).count(), 1, "{:?}", given("anna"));
 }
 
 #[test]

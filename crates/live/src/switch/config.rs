@@ -44,6 +44,9 @@ pub struct SwitchConfig {
     /// The predicted column that is compared; none: pressing, -`Fz_N`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
+    /// The model on whose predictions the thresholds were chosen: the `sha256` of its file; none: not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_sha256: Option<String>,
     /// What the switch does, for its events: `x+`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
@@ -74,6 +77,12 @@ pub struct Place {
 #[error("{}", .0.join("; "))]
 pub struct ConfigFault(pub Vec<String>);
 
+/// The predicted column that a switch compares (`column` of its file), and the factor that it is taken by.
+#[must_use]
+pub fn compared(column: Option<&str>) -> (&str, f64) {
+    column.map_or(("Fz_N", -1.0), |column| (column, 1.0))
+}
+
 impl SwitchConfig {
     /// Pressed from `on_n` on, released below `off_n`; all else off.
     #[must_use]
@@ -88,6 +97,7 @@ impl SwitchConfig {
             watchdog_s: 0.0,
             outside: None,
             column: None,
+            model_sha256: None,
             name: None,
             finger: None,
             places: Vec::new(),

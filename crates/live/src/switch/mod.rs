@@ -19,7 +19,7 @@ mod rice;
 mod tests;
 mod tune;
 
-pub use config::{ConfigFault, Outside, Place, SwitchConfig};
+pub use config::{ConfigFault, Outside, Place, SwitchConfig, compared};
 pub use contact::{Contact, Contacts, LONGEST_GAP_S};
 pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, matches};
 pub use event::{Reason, SwitchEvent, Turn};

@@ -51,6 +51,8 @@ pub struct Opened {
     pub predictor: Predictor,
     /// The file was edited after it was written: what it says of its training need not be true of its numbers.
     pub edited: bool,
+    /// The checksum of what it holds, hexadecimal; in a file that was not edited its `sha256`.
+    pub sha256: String,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -153,13 +155,14 @@ impl Predictor {
         // From the text, not from the value: the place of a fault stays known.
         let mut file: File = serde_json::from_str(text)?;
         let stated = file.sha256.take();
-        let edited = stated != Some(checksum(&file));
+        let sha256 = checksum(&file);
+        let edited = stated.is_none_or(|stated| stated != sha256);
         let model = file.model.clone().model()?;
         check(&model, &file)?;
         let names: Vec<String> = file.targets.iter().map(|channel| channel.name.clone()).collect();
         let cone = file.training.recipe.cone(&names).map_err(|fault| FileFault::Other(fault.to_string()))?;
         let File { inputs, targets, training, intervals, lags, .. } = file;
-        Ok(Opened { predictor: Predictor { model, inputs, targets, training, intervals, lags, cone }, edited })
+        Ok(Opened { predictor: Predictor { model, inputs, targets, training, intervals, lags, cone }, edited, sha256 })
     }
 }
 

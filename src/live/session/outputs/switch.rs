@@ -1,6 +1,6 @@
 //! A switch of a session: answers to presses and releases.
 
-use lunula_live::switch::{Reading, Reason, Switch, SwitchEvent, Turn};
+use lunula_live::switch::{Reading, Reason, Switch, SwitchEvent, Turn, compared};
 use lunula_live::wire::Row;
 use serde::Serialize;
 
@@ -44,10 +44,7 @@ impl SwitchOutput {
         predicted: &[String],
         columns: &StreamColumns,
     ) -> Result<Self, LiveError> {
-        let (name, sign) = match &switch.config().column {
-            Some(column) => (column.as_str(), 1.0),
-            None => ("Fz_N", -1.0),
-        };
+        let (name, sign) = compared(switch.config().column.as_deref());
         let column = predicted.iter().position(|one| one == name).ok_or_else(|| {
             LiveError::Request(format!(
                 "the switch compares {name}, and the models predict {}; name a model of it",

@@ -331,3 +331,24 @@ fn standard_errors_hold_for_markers_that_nearly_coincide() {
         assert!((rms - 1.0).abs() <= most && (0.60..=0.76).contains(&within), "{sd}: {rms} {within}");
     }
 }
+
+#[test]
+fn markers_of_neighbouring_segments_that_are_exchanged_are_said() {
+    let doubts = |layout: &Layout, exchanged: bool, most_deg: f64| {
+        let mut angles = angles_of(layout, UPRIGHT);
+        for frame in 0..40 {
+            let bent = most_deg * f64::from(frame) / 39.0;
+            let mut places = two_each(finger(10.0, [0.2 * bent, bent, 0.7 * bent]));
+            if exchanged {
+                places.swap(5, 6);
+            }
+            angles.step(&seen(&places));
+        }
+        angles.overlapping().collect::<Vec<_>>()
+    };
+    for most_deg in [20.0, 120.0] {
+        assert!(doubts(&pairs(), false, most_deg).is_empty());
+        let said = doubts(&pairs(), true, most_deg);
+        assert!(said.len() == 1 && said[0].starts_with("the distal segment of J3 begins (`g`) before"), "{said:?}");
+    }
+}
