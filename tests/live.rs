@@ -642,8 +642,17 @@ fn a_sensor_that_repeats_its_last_sample_is_said_by_switch_and_live() {
     for said in [live("good.csv"), judged("good.csv")] {
         assert!(!said.stderr.contains("keep(s) all values"), "{}", said.stderr);
     }
-    for said in [live("stopped.csv").says("stand still at 5.48"), judged("stopped.csv")] {
-        said.says("keep(s) all values in 1 stretch(es), the longest 701 samples from 4.99");
+    let dead = |t_s: f64, light: f64, force: f64| format!("{t_s},{light},0.4,{force}\n");
+    dir.write("dead.csv", altered(20.0, names, dead));
+    for said in [live("dead.csv"), judged("dead.csv")] {
+        said.says("P2 keep(s) all values in 1 stretch(es), the longest 2000 samples");
+    }
+    dir.write("empty.csv", altered(20.0, names, |t_s, light, force| format!("{t_s},{light},,{force}\n")));
+    dir.words("live --source empty.csv --model two.json").expect(1).says("no row is answered: each lacks a photodiode");
+    for said in
+        [live("stopped.csv").says("all photodiodes that a model reads stand(s) still at 5.99"), judged("stopped.csv")]
+    {
+        said.says("keep(s) all values in 1 stretch(es), the longest 701 samples from 4.990");
     }
 }
 

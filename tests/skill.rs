@@ -250,6 +250,13 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     let slow: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![1000.0 * row[0], row[1]]).collect();
     dir.write("ms.csv", csv("time_s,Fz_N", &slow));
     run(&dir, "ms.csv --out t").expect(0).says("ms.csv: rows are 10 s apart");
+    // What is true of contact is no gate.
+    let flagged: Vec<Vec<f64>> =
+        rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![row[0], row[1], f64::from(row[1] < 0.0)]).collect();
+    dir.write("flag.csv", csv("time_s,Fz_N,contact", &flagged));
+    let flag = run(&dir, "flag.csv --out f --json").expect(0);
+    assert_eq!(flag.json()["trials"][0]["fingers"], report["trials"][0]["fingers"]);
+    flag.says("column `contact` is 0 or 1, whether the finger touches, and is not read");
     // A decimal point that was lost, and a transducer at the end of its range.
     let lost = |row: Vec<f64>| vec![row[0], if row[0] == 1.5 { 1e4 * row[1] - 1e3 } else { row[1] }];
     dir.write("lost.csv", csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]).into_iter().map(lost).collect::<Vec<_>>()));

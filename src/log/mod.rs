@@ -33,7 +33,7 @@ mod tests;
 use std::path::{Path, PathBuf};
 
 pub use ambient::{AmbientError, AmbientOptions, AmbientRule, Samples, samples};
-pub(crate) use ambient::{PRECEDING_RULE, Preceding, Still, piles};
+pub(crate) use ambient::{PRECEDING_RULE, Preceding, Standing, Still, piles};
 pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
 pub use lines::stamps::TimeUnit;
 pub(crate) use lines::status::{Statuses, Verdict};

@@ -186,8 +186,14 @@ fn read_all(
     strays: &mut Vec<String>,
 ) -> Result<Vec<Reading>, LayoutError> {
     let mut files = Vec::new();
+    let normalized = folder.join("normalized");
+    if !normalized.is_dir() {
+        let what = "is not there: the nails' normalized pictures, which `lunula photos merge` leaves with the parts; \
+                    name a folder that `lunula photos` wrote of all photographs at once";
+        return Err(LayoutError::input(&normalized, what));
+    }
     for (pose, name) in poses.iter().enumerate() {
-        let place = folder.join("normalized").join(name);
+        let place = normalized.join(name);
         let pictures: Vec<String> = listed(&place)?.into_iter().filter(|file| is_picture(Path::new(file))).collect();
         let subjects = listed_nails.and_then(|nails| nails.get(name));
         let stems = subjects.cloned().unwrap_or_else(|| pictures.iter().map(|file| stem(file)).collect());

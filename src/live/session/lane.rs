@@ -11,7 +11,6 @@ use super::feed::{Feed, is_away};
 use super::open::source_fault;
 use super::outputs::Outputs;
 use super::outputs::samples::Samples;
-use super::sensor::PHOTODIODES;
 use crate::live::error::LiveError;
 use crate::live::onlooker::Onlooker;
 use crate::log::LogReading;
@@ -280,8 +279,8 @@ impl Work {
             }
         };
         decide.row(row, common_s, kept, &mut shared.outputs)?;
-        if decide.answers.as_mut().is_some_and(|answers| std::mem::take(&mut answers.sensor.stops)) {
-            (shared.tell)(&format!("warning: {}{PHOTODIODES} stand still at {common_s:.3} s", self.label));
+        if let Some(what) = decide.answers.as_mut().and_then(|answers| answers.sensor.stops.take()) {
+            (shared.tell)(&format!("warning: {}{what} stand(s) still at {common_s:.3} s", self.label));
         }
         shared.heard(decide);
         if let (Some(seconds), Some([from_s, to_s])) = (shared.seconds, decide.span_s) {

@@ -31,4 +31,4 @@ pub(crate) use replay::each_row;
 pub use report::{Latency, SessionFigures, SessionReport, SourceFigures, SourceRole};
 pub(crate) use run::attend;
 pub use run::{Readers, live, record};
-pub(crate) use sensor::{PHOTODIODES, Sensor};
+pub(crate) use sensor::Sensor;

@@ -12,7 +12,6 @@ use super::feed::Feed;
 use super::lane::{Lane, Shared};
 use super::outputs::pointer::{PointerCounts, PointerOutput};
 use super::outputs::switch::{SwitchCounts, SwitchOutput};
-use super::sensor::PHOTODIODES;
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
@@ -238,10 +237,13 @@ impl SessionFigures {
                 (1.., 0) if sensor.has_led() => {
                     Some("the LED was never off, so no ambient light is known; where it stays on, leave `led` out")
                 }
+                (lit @ 1.., _) if lit == sensor.without => {
+                    Some("each lacks a photodiode that a model reads, its ambient light or what was before it")
+                }
                 _ => None,
             };
             failed.extend(nothing.map(|why| format!("no row is answered: {why}")));
-            doubts.extend(sensor.still.doubt(PHOTODIODES));
+            doubts.extend(sensor.doubts());
         }
         let Some(mut samples) = samples else { return doubts };
         failed.extend(samples.end_forces().err().map(|why| why.to_string()));

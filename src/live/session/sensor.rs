@@ -8,11 +8,8 @@ use lunula_live::wire::Row;
 use lunula_predictor::Contact;
 
 use super::columns::StreamColumns;
-use crate::log::{AmbientError, LogReading, Preceding, Statuses, Still, Verdict};
+use crate::log::{AmbientError, LogReading, Preceding, Standing, Statuses, Verdict};
 use crate::predictor::Answering;
-
-/// What a sensor's channels are called in what is said of them.
-pub(crate) const PHOTODIODES: &str = "the photodiodes that a model reads";
 
 /// A sensor and its models.
 #[derive(Debug)]
@@ -34,14 +31,17 @@ pub(crate) struct Sensor {
     keep_faults: bool,
     volts: Vec<f64>,
     answer: Vec<f64>,
-    /// Whether its photodiodes stand still, and whether they have just begun to.
-    pub(crate) still: Still,
-    pub(crate) stops: bool,
+    /// Whether its photodiodes stand still.
+    standing: Standing,
+    /// Which were just seen to, for who looks after the session.
+    pub(crate) stops: Option<String>,
     /// Lit rows, unlit ones, and those that do not say.
     pub(crate) lit: u64,
     pub(crate) unlit: u64,
     pub(crate) unknown: u64,
     pub(crate) not_known: u64,
+    /// Lit rows of which nothing is known.
+    pub(crate) without: u64,
 }
 
 /// What was made of a lit row.
@@ -77,8 +77,8 @@ impl Sensor {
         Ok(Self {
             volts: vec![f64::NAN; inputs.len()],
             answer: vec![f64::NAN; answering.columns().len()],
-            still: Still::new(inputs.len()),
-            stops: false,
+            standing: Standing::new(&inputs),
+            stops: None,
             answering,
             preceding,
             places,
@@ -93,7 +93,13 @@ impl Sensor {
             unlit: 0,
             unknown: 0,
             not_known: 0,
+            without: 0,
         })
+    }
+
+    /// What to say of its photodiodes.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        self.standing.doubts()
     }
 
     /// Its models.
@@ -135,9 +141,10 @@ impl Sensor {
         }
         let status = self.statuses.as_mut().map(|(at, statuses)| statuses.read_bytes(&row.texts[*at]));
         let mut faulty = status == Some(Verdict::Fault);
-        // One photodiode alone may keep its value while a finger rests.
-        if self.volts.len() > 1 && (self.preceding.is_none() || row.lit == Some(true)) {
-            self.stops |= self.still.push(row.time_s, self.volts.iter().copied());
+        if (self.preceding.is_none() || row.lit == Some(true))
+            && let Some(what) = self.standing.push(row.time_s, &self.volts)
+        {
+            self.stops = Some(what.to_owned());
         }
         if let Some(preceding) = &mut self.preceding {
             if begins {
@@ -166,6 +173,7 @@ impl Sensor {
         let contact = self.answering.answer(row.time_s, begins, &self.volts, &mut self.answer);
         self.lit += 1;
         self.not_known += u64::from(!self.answer.iter().all(|value| value.is_finite()));
+        self.without += u64::from(!self.answer.iter().any(|value| value.is_finite()));
         Some(Answer { contact, outside: self.answering.outside() > before })
     }
 }

@@ -114,7 +114,7 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
         Ok(table.numbers_or_nan(name)?.into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect())
     };
     let mut fingers: Vec<Finger> = Vec::new();
-    let mut angles_without_gate = false;
+    let (mut angles_without_gate, mut notes) = (false, Vec::new());
     for column in table.names().iter().filter(|name| is_force(name)) {
         let own = finger_of(column, FORCE);
         let name = own.unwrap_or(plain).to_owned();
@@ -124,7 +124,13 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
         }
         let dotted = |column: &str| own.map_or(column.to_owned(), |own| format!("{own}.{column}"));
         let gate = [dotted(CONTACT), CONTACT.to_owned()].into_iter().find(|name| table.has(name));
-        let gate = gate.map(|gate| gates(&table, &gate)).transpose()?;
+        let gate = match gate {
+            Some(gate) if is_flag(&table, &gate)? => {
+                notes.push(format!("column `{gate}` is 0 or 1, whether the finger touches, and is not read"));
+                None
+            }
+            gate => gate.map(|gate| gates(&table, &gate)).transpose()?,
+        };
         let angles = table.names().iter().filter(|name| is_angle(name, own));
         let angles = match gate {
             Some(_) => angles.map(|name| Ok((name.clone(), numbers(name)?))).collect::<Result<_, TableError>>()?,
@@ -152,7 +158,7 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
         angles_without_gate,
         warnings: not_read(table.names()),
         table: Some(table),
-        notes: Vec::new(),
+        notes,
     })
 }
 
@@ -215,6 +221,17 @@ fn is_angle(name: &str, finger: Option<&str>) -> bool {
         None => Some(name).filter(|name| !name.contains('.')),
     };
     own.is_some_and(|own| own.ends_with("_deg") && !own.ends_with("_sd_deg"))
+}
+
+/// Whether a column says by 0 and 1 what is true of contact, and is no gate's.
+fn is_flag(table: &Table, column: &str) -> Result<bool, TableError> {
+    let is_flag = |cell: &String| cell.trim().parse().is_ok_and(|value: f64| value == 0.0 || value == 1.0);
+    let mut known = false;
+    let all = table.texts(column)?.iter().flatten().all(|cell| {
+        known = true;
+        is_flag(cell)
+    });
+    Ok(known && all)
 }
 
 fn gates(table: &Table, column: &str) -> Result<Vec<Gate>, TableError> {

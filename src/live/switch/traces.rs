@@ -10,7 +10,7 @@ use lunula_predictor::{Gate, Predictor};
 use super::options::ContactOptions;
 use crate::job::Watch;
 use crate::live::error::LiveError;
-use crate::live::session::{PHOTODIODES, Sensor, StreamColumns, each_row};
+use crate::live::session::{Sensor, StreamColumns, each_row};
 use crate::log::{Log, LogError, doubts};
 use crate::predictor::{Answering, DataFile, extrapolated, open_models};
 
@@ -172,7 +172,7 @@ fn read_trace(
         watch,
     )?;
     said.notes.extend(notes);
-    said.warnings.extend(sensor.into_inner().and_then(|(sensor, _)| sensor.still.doubt(PHOTODIODES)));
+    said.warnings.extend(sensor.into_inner().into_iter().flat_map(|(sensor, _)| sensor.doubts()));
     match piece {
         Some((piece, log)) if log.time_s.len() != times.len() => {
             return Err(refused(format!(

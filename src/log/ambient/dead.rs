@@ -1,7 +1,8 @@
 //! Channels that show nothing, or nothing for a while.
 //!
 //! Warned of, and not left out: a channel may be dead to the LED's light and still be wanted. Looked at are the lit
-//! samples as they were recorded: [`warn`] at those of a channel, [`Still`] at those of all of a sensor's as they come.
+//! samples as they were recorded: [`warn`] at those of a channel of a log, [`Standing`] at all channels of a sensor as
+//! samples come.
 
 /// A channel with so few values is called dead; its samples have to be [`SAMPLES`] at least.
 const VALUES: usize = 3;
@@ -59,6 +60,10 @@ pub(super) fn warn(name: &str, time_s: &[f64], values: &[f64], warnings: &mut Ve
     }
 }
 
+/// All channels of a sensor at once stand still where they do so for as long as this as well, seconds (assumed: each
+/// heartbeat moves them).
+const STILL_S: f64 = 1.0;
+
 /// Samples all of whose channels stand still: as where what logs them repeats its last one.
 #[derive(Debug, Clone)]
 pub(crate) struct Still {
@@ -74,7 +79,7 @@ pub(crate) struct Still {
 }
 
 /// A run of equal samples.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Stretch {
     samples: u64,
     first_s: f64,
@@ -102,8 +107,9 @@ impl Still {
             return false;
         }
         (self.run.samples, self.run.last_s) = (self.run.samples + 1, time_s);
-        let [samples, runs] = self.usual;
-        if self.run.samples < STUCK as u64 || LONGER * samples as f64 > (self.run.samples * runs) as f64 {
+        let ([samples, runs], run) = (self.usual, self.run);
+        let is_short = run.samples < STUCK as u64 || run.last_s - run.first_s < STILL_S;
+        if is_short || LONGER * samples as f64 > (run.samples * runs) as f64 {
             return false;
         }
         if self.longest.is_none_or(|longest| self.run.samples >= longest.samples) {
@@ -119,15 +125,54 @@ impl Still {
         let Stretch { samples, first_s, last_s } = self.longest?;
         Some(format!(
             "{what} keep(s) all values in {} stretch(es), the longest {samples} samples from {first_s:.3} to \
-             {last_s:.3} s: does what logs them repeat its last sample? All that follows from them there is of it",
+             {last_s:.3} s: dead, or repeated by what logs them? All that follows from them there is of an old sample",
             self.stretches
         ))
     }
 }
 
+/// The channels of a sensor, of which one stands still, or all do at once.
+#[derive(Debug, Clone)]
+pub(crate) struct Standing {
+    names: Vec<String>,
+    all: Still,
+    each: Vec<Still>,
+}
+
+/// What all channels together are called.
+const ALL: &str = "all photodiodes that a model reads";
+
+impl Standing {
+    /// Of channels of these names.
+    pub(crate) fn new(names: &[String]) -> Self {
+        let still = |channels| Still::new(channels);
+        Self { names: names.to_vec(), all: still(names.len()), each: names.iter().map(|_| still(1)).collect() }
+    }
+
+    /// A lit sample; what has just been seen to stand still for the first time.
+    pub(crate) fn push(&mut self, time_s: f64, values: &[f64]) -> Option<&str> {
+        let all = self.all.push(time_s, values.iter().copied());
+        let mut first = None;
+        for ((name, still), value) in self.names.iter().zip(&mut self.each).zip(values) {
+            if still.push(time_s, std::iter::once(*value)) {
+                first.get_or_insert(name.as_str());
+            }
+        }
+        if all { Some(ALL) } else { first.filter(|_| !self.all.is_long) }
+    }
+
+    /// What to say of them.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        let each = self.names.iter().zip(&self.each);
+        let all = |still: &Still| self.all.longest.is_some() && still.longest == self.all.longest;
+        let each = each.filter(|(_, still)| !all(still)).filter_map(|(name, still)| still.doubt(name));
+        self.all.doubt(ALL).into_iter().chain(each).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Still;
+    use super::{ALL, Standing, Still};
 
     /// What is said of a stream at 25 Hz, and at which of its samples the first time.
     fn of(samples: usize, value: impl Fn(usize) -> f64) -> (Option<String>, Vec<usize>) {
@@ -154,5 +199,25 @@ mod tests {
         let (doubt, began) = of(1000, |k| if k % 300 < 200 { alive(k) } else { 3.0 });
         assert_eq!(began, [249]);
         assert!(doubt.unwrap().contains("in 3 stretch(es), the longest 100 samples from 32.000"));
+    }
+
+    #[test]
+    fn a_channel_that_is_dead_is_named_and_all_at_once_are_one() {
+        let names = ["P1", "P2", "P3"].map(str::to_owned);
+        let of = |value: &dyn Fn(usize, usize) -> f64| {
+            let mut standing = Standing::new(&names);
+            let values = |k: usize| [0, 1, 2].map(|channel| value(channel, k));
+            let began =
+                (0..1000).filter_map(|k| standing.push(0.04 * k as f64, &values(k)).map(|what| (k, what.to_owned())));
+            (began.collect::<Vec<_>>(), standing.doubts())
+        };
+        let alive = |channel: usize, k: usize| (k as f64 + 0.3 * channel as f64).sin();
+        assert_eq!(of(&alive), (vec![], vec![]));
+        let (began, doubts) = of(&|channel, k| if channel == 1 { 0.0 } else { alive(channel, k) });
+        assert_eq!(began, [(49, "P2".to_owned())]);
+        assert!(doubts.len() == 1 && doubts[0].starts_with("P2 keep(s) all values in 1 stretch(es), the longest 1000"));
+        let (began, doubts) = of(&|channel, k| alive(channel, k.min(500)));
+        assert_eq!(began, [(549, ALL.to_owned())]);
+        assert!(doubts.len() == 1 && doubts[0].starts_with("all photodiodes that a model reads keep(s)"), "{doubts:?}");
     }
 }

@@ -21,7 +21,7 @@ mod unlit;
 
 use super::{Channel, Log, doubts};
 use crate::words::Words;
-pub(crate) use dead::Still;
+pub(crate) use dead::{Standing, Still};
 pub(crate) use preceding::{Preceding, RULE as PRECEDING_RULE};
 pub(crate) use rails::piles;
 

@@ -43,9 +43,28 @@ pub(super) fn warnings(source: &Source, targets: &[String], keep_faults: bool) -
             ));
         }
     }
+    warnings.extend(copies(source).map(|said| format!("{file}: {said}")));
     let targets = targets.iter().zip(&source.y).flat_map(|(name, values)| cut_off(name, &seen(values)));
     warnings.extend(targets.map(|said| format!("{file}: {said}")));
     warnings
+}
+
+/// Photodiodes of a file that are another's in every row, and not all one value.
+fn copies(source: &Source) -> impl Iterator<Item = String> {
+    let photodiodes: Vec<(&String, &Vec<f64>)> =
+        source.inputs.iter().zip(&source.x).filter(|(name, _)| cell(name).is_none()).collect();
+    let count = photodiodes.len();
+    let is_copy = |one: &[f64], other: &[f64]| {
+        let mut both = one.iter().zip(other).filter(|(one, _)| !one.is_nan());
+        let first = both.clone().next().map(|(value, _)| *value);
+        both.clone().any(|(value, _)| Some(*value) != first) && both.all(|(one, other)| one == other)
+    };
+    let of = move |k: usize| {
+        let (name, values) = photodiodes[k];
+        let (other, _) = photodiodes[..k].iter().find(|(_, other)| is_copy(values, other))?;
+        Some(format!("{name} is {other} in all rows: is one of them a copy of the other's column?"))
+    };
+    (0..count).filter_map(of)
 }
 
 /// Photodiodes of one sensor are alike from recording to recording; so many times another's are in another unit

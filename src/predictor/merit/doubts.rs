@@ -14,8 +14,12 @@ const FAR_N: f64 = 0.1;
 const CONSTANT: f64 = 1e-24;
 /// Answers follow what was measured where they share so much of its variance (assumed) ...
 const FOLLOWS: f64 = 0.8;
-/// ... in another unit where they are so many times as large, or as small (assumed).
+/// ... in another unit where they are so many times as large, or as small (assumed), ...
 const OTHER_UNIT: f64 = 3.0;
+/// ... or by so much, where a factor alone leaves so little of the errors of an offset alone (assumed: a sensor that is
+/// put on again changes its gains by less).
+const OTHER_GAIN: f64 = 1.7;
+const FACTOR: f64 = 0.5;
 
 /// What to say of answers to a recording: `data` are its rows, `seen` those with lags that were answered by `values`.
 pub(in crate::predictor) fn doubts(
@@ -104,15 +108,25 @@ fn astray(measured: ArrayView1<'_, f64>, predicted: ArrayView1<'_, f64>) -> Opti
         return None;
     }
     let follows = other > 0.0 && both * both >= FOLLOWS * own * other;
-    let times = both / other;
-    if follows && !(1.0 / OTHER_UNIT..=OTHER_UNIT).contains(&times.abs()) {
-        let unit = "is it, or are the voltages, in another unit?";
+    let is_other = |times: f64, most: f64| !(1.0 / most..=most).contains(&times.abs());
+    // By a factor about the means, or by one alone.
+    let [mm, mp, pp] = [total(&|m, _| m * m), total(&|m, p| m * p), total(&|_, p| p * p)];
+    let by_factor = mm - mp * mp / pp;
+    let is_gain = by_factor <= FACTOR * (own - 2.0 * both + other) && by_factor <= (1.0 - FOLLOWS) * own;
+    let [about, alone] = [both / other, mp / pp];
+    let times = [(about, is_other(about, OTHER_UNIT)), (alone, is_gain && is_other(alone, OTHER_GAIN))];
+    if let Some((times, _)) = times.into_iter().find(|(_, is_other)| follows && *is_other) {
+        let unit = "is it, or are the voltages, in another unit, or has one of them another gain?";
         return Some(format!("what was measured is {times:.3} times what is predicted: {unit}"));
     }
     let looks = match (follows, both > 0.0) {
         _ if errors < own => return None,
         (true, true) => {
-            format!("it is right but for an offset of {:.3}: zero the transducer, or train on this session too", m - p)
+            format!(
+                "it is right but for an offset of {:.3}: was the transducer zeroed, has a photodiode another gain? Or \
+                 train on this session too",
+                m - p
+            )
         }
         (true, false) => "it is right but for the sign: negate what was measured (forces are those of the finger on \
                           the surface)"
@@ -149,6 +163,12 @@ mod tests {
         let grams = said(&|force| 101.97 * force);
         assert!(grams.contains("measured is 0.010 times what is predicted"), "{grams}");
         assert!(said(&|force| -101.97 * force).contains("is -0.010 times"));
+        // Of half the size, and twice: no offset.
+        for (of, times) in [(2.0, "0.500"), (0.5, "2.000")] {
+            let gain = said(&|force| of * force);
+            assert!(gain.contains(&format!("measured is {times} times what is predicted")), "{gain}");
+        }
+        assert_eq!(said(&|force| 0.7 * force), "", "a sensor that was put on again");
         let offset = said(&|force| force + 4.0);
         assert!(offset.contains("an offset of -4.000"), "{offset}");
         assert!(said(&|force| 10.0 * force.powi(2) % 7.0).contains("in another order"));

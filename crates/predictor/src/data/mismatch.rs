@@ -106,11 +106,13 @@ pub fn exchanged(
     }
     let targets = answered.targets().len();
     let own: Vec<usize> = (0..targets).collect();
+    let both = |one: &Recording, values: &Array2<f64>, [target, k]: [usize; 2]| {
+        let rows = Slice::from(one.rows.clone());
+        [(answered.y(), target), (values, k)].map(|(of, column)| of.column(column).slice_axis(Axis(0), rows).to_owned())
+    };
     let share = |one: &Recording, values: &Array2<f64>, order: &[usize]| {
         let shares = order.iter().enumerate().map(|(k, &target)| {
-            let rows = Slice::from(one.rows.clone());
-            let [measured, values] = [(answered.y(), target), (values, k)]
-                .map(|(of, column)| of.column(column).slice_axis(Axis(0), rows).to_owned());
+            let [measured, values] = both(one, values, [target, k]);
             (&measured - &values).var(0.0) / measured.var(0.0)
         });
         shares.sum::<f64>() / targets as f64
@@ -142,9 +144,21 @@ pub fn exchanged(
     for pair in pairs(0..targets) {
         look(pair.map(|k| inputs + k), values, &in_order(targets, pair));
     }
+    // A force of another sign or unit is no exchange.
+    for ((_, one, recorded), tried) in doubted.iter().zip(&mut tried) {
+        for k in 0..targets {
+            let [measured, values] = both(one, values, [k, k]);
+            let (measured, values) =
+                (&measured - measured.mean().unwrap_or(0.0), &values - values.mean().unwrap_or(0.0));
+            let by = measured.dot(&values) / values.dot(&values);
+            let gain = ((&measured - &values).var(0.0) - (&measured - by * &values).var(0.0)) / measured.var(0.0);
+            tried.push((Difference::Scaled { column: inputs + k, by }, recorded - gain / targets as f64));
+        }
+    }
     let found = doubted.into_iter().zip(tried).filter_map(|((part, _, recorded), tried)| {
         let (difference, mended) = best(tried, recorded)?;
-        (recorded - mended >= LESS).then_some(Mismatch { part, difference, recorded, mended })
+        let is_exchange = matches!(difference, Difference::Exchanged(_)) && recorded - mended >= LESS;
+        is_exchange.then_some(Mismatch { part, difference, recorded, mended })
     });
     found.collect()
 }
@@ -401,6 +415,9 @@ mod tests {
             assert!(mended < 0.1 && recorded > 2.0 * mended, "{all:?}");
         }
         assert_eq!(said(changed(touched(3), 1, Difference::Scaled { column: 2, by: 2.0 })), [], "no exchange");
+        for by in [-1.0, 0.3] {
+            assert_eq!(said(changed(touched(3), 1, Difference::Scaled { column: 5, by })), [], "a force, no exchange");
+        }
         let [x, mut y] = changed(touched(3), 1, Difference::Exchanged([0, 1]));
         y.column_mut(1).fill(0.0);
         assert_eq!(said([x, y]), [], "a target that does not change");
