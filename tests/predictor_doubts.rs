@@ -126,8 +126,26 @@ fn a_column_that_hangs_is_warned_of() {
     dir.write("t.csv", table.collect::<String>());
     let answer = dir.lunula(&["train", "t.csv", "--target", "force", "--out", "m.json"]).expect(0);
     answer.says("t.csv: P4 doesn't change by a digit");
+    // All of them, whatever the force does.
+    let text = std::fs::read_to_string(dir.path("t.csv")).expect("a table");
+    let mut kept = String::new();
+    let all = text.lines().map(|line| {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        if cells[0].parse::<f64>().is_ok_and(|t_s| (100.0..112.0).contains(&t_s)) {
+            if kept.is_empty() {
+                kept = cells[1..9].join(",");
+            }
+            cells.splice(1..9, kept.split(','));
+        }
+        cells.join(",") + "\n"
+    });
+    let all = all.collect::<String>();
+    dir.write("t.csv", all);
+    let answer = dir.lunula(&["train", "t.csv", "--target", "force", "--out", "m.json"]).expect(0);
+    answer.says("t.csv: all photodiodes keep their values in 150 rows, from 100.1 to 112.0 s, while ");
     // No touch is no fault, nor is a moment.
     unheard(&hangs(100.0, 112.0, 10..13, Some("0")));
+    unheard(&hangs(100.0, 112.0, 10..13, Some("-0.01")));
     unheard(&hangs(100.0, 100.6, 10..13, None));
 }
 

@@ -194,8 +194,8 @@ fn slips(columns: &[(&str, &[f64])]) -> Option<String> {
     let slips = much.iter().filter(|&&row| -fz[row] < HOLDS * shear(row)).count();
     (much.len() >= LOOSE_ROWS && 2 * slips > much.len()).then(|| {
         format!(
-            "in {slips} of {} rows with a shear of more than {MUCH_SHEARED_N} N, Fz_N presses with less than {HOLDS} of \
-             it, by which no finger holds on: are two of the columns exchanged, or in other units?",
+            "in {slips} of {} rows with a shear of more than {MUCH_SHEARED_N} N, Fz_N presses with less than {HOLDS} \
+             of it, by which no finger holds on: are two of the columns exchanged, or in other units?",
             much.len()
         )
     })

@@ -60,11 +60,11 @@ pub(super) fn warn(name: &str, time_s: &[f64], values: &[f64], warnings: &mut Ve
     }
 }
 
-/// All channels of a sensor at once stand still where they do so for as long as this as well, seconds (assumed: each
-/// heartbeat moves them).
+/// A sensor's channels stand still where they do so for as long as this as well, seconds (assumed: each heartbeat moves
+/// them).
 const STILL_S: f64 = 1.0;
 
-/// Samples all of whose channels stand still: as where what logs them repeats its last one.
+/// Samples that are the same in all of some channels, one after the other.
 #[derive(Debug, Clone)]
 pub(crate) struct Still {
     last: Vec<f64>,

@@ -14,8 +14,31 @@ pub(super) struct NamePattern {
     pub(super) others: Vec<String>,
 }
 
-/// The pattern of most of the files; `innermost` are the names of the last places, the last first.
-pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<NamePattern> {
+/// How the places of a pattern are called.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Places<'a> {
+    /// Of nails: from the last one on subject, pose.
+    Nails,
+    /// Of recordings: from the first one on subject, session, trial; a single one is a session.
+    Recordings,
+    /// The only one.
+    One(&'a str),
+}
+
+impl Places<'_> {
+    fn name(self, place: usize, count: usize) -> String {
+        let (names, at): (&[&str], usize) = match self {
+            Self::Nails => (&["subject", "pose"], count - 1 - place),
+            Self::Recordings if count == 1 => (&["session"], place),
+            Self::Recordings => (&["subject", "session", "trial"], place),
+            Self::One(name) => return name.to_owned(),
+        };
+        names.get(at).map_or_else(|| format!("part{}", at + 1), |name| (*name).to_owned())
+    }
+}
+
+/// The pattern of most of the files.
+pub(super) fn shape(paths: &[String], places: Places<'_>) -> Option<NamePattern> {
     // Files of one depth, ending and top folder are of one pattern.
     let mut groups: BTreeMap<(usize, String, bool), Vec<&String>> = BTreeMap::new();
     for path in paths {
@@ -26,10 +49,7 @@ pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<NamePattern>
     let parts: Vec<Vec<&str>> = group.iter().map(|path| stemmed(path)).collect();
     let depth = parts[0].len();
     let differs: Vec<usize> = (0..depth).filter(|&at| parts.iter().any(|part| part[at] != parts[0][at])).collect();
-    let name = |place: usize| {
-        let from_the_end = differs.len() - 1 - place;
-        innermost.get(from_the_end).map_or_else(|| format!("part{}", from_the_end + 1), |name| (*name).to_owned())
-    };
+    let name = |place: usize| places.name(place, differs.len());
     let mut names = Vec::new();
     let mut pattern = Vec::new();
     for (at, &part) in parts[0].iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Pipelines for folders of files that are what their names and headers say.
 
-use super::shape::shape;
+use super::shape::{Places, shape};
 use super::{InitError, propose};
 use crate::pipeline::{Plan, Spec, kinds};
 
@@ -29,16 +29,49 @@ fn proposed(files: &[(&str, &str)]) -> (String, Vec<String>) {
 
 #[test]
 fn names_that_differ_become_places() {
-    let shaped = |paths: &[&str]| {
+    let of = |paths: &[&str], places: Places<'_>| {
         let paths: Vec<String> = paths.iter().map(|path| (*path).to_owned()).collect();
-        shape(&paths, &["subject", "pose"]).map(|shape| (shape.pattern, shape.others.len()))
+        shape(&paths, places).map(|shape| (shape.pattern, shape.others.len()))
     };
+    let shaped = |paths: &[&str]| of(paths, Places::Nails);
     assert_eq!(shaped(&["p/rest/a.png", "p/press/b.png"]), Some(("p/{pose}/{subject}.png".into(), 0)));
     assert_eq!(shaped(&["a.png", "b.png", "deep/c.png"]), Some(("{subject}.png".into(), 1)));
     assert_eq!(shaped(&["one[1].png"]), Some(("one?1?.png".into(), 0)));
     assert_eq!(shaped(&["x/1/a/v.mp4", "x/2/b/v.mp4"]), Some(("x/{pose}/{subject}/v.mp4".into(), 0)));
     assert_eq!(shaped(&["1/2/a.x", "3/4/b.x"]), Some(("{part3}/{pose}/{subject}.x".into(), 0)));
     assert_eq!(shaped(&[]), None);
+    // The outermost place of recordings is the person, whatever lies below.
+    let recordings = |paths: &[&str]| of(paths, Places::Recordings).unwrap().0;
+    assert_eq!(recordings(&["anna/1/v.mp4", "ben/2/v.mp4"]), "{subject}/{session}/v.mp4");
+    assert_eq!(recordings(&["anna/1/a.csv", "ben/2/b.csv"]), "{subject}/{session}/{trial}.csv");
+    assert_eq!(recordings(&["a/b/c/d.csv", "e/f/g/h.csv"]), "{subject}/{session}/{trial}/{part4}.csv");
+    assert_eq!(recordings(&["S01/log.csv", "S02/log.csv"]), "{session}/log.csv");
+}
+
+#[test]
+fn what_is_there_once_is_not_taken_for_all() {
+    let three = |name: &'static str, text: &'static str| {
+        ["S01", "S02", "S03"].map(|session| (format!("{session}/{name}"), text))
+    };
+    let proposed = |files: Vec<(String, &str)>| {
+        proposed(&files.iter().map(|(name, text)| (name.as_str(), *text)).collect::<Vec<_>>())
+    };
+    let one = |name: &str, text: &'static str| (format!("S01/{name}"), text);
+    // Videos that were not copied yet.
+    let (text, tasks) =
+        proposed([&three("markers.toml", MARKERS)[..], &three("log.csv", LOG), &[one("video.mp4", "")]].concat());
+    assert!(text.contains("which marker file belongs to which video does not follow"), "{text}");
+    assert_eq!(tasks, ["force"]);
+    // Logs that were not.
+    let (text, tasks) =
+        proposed([&three("markers.toml", MARKERS)[..], &three("video.mp4", ""), &[one("log.csv", LOG)]].concat());
+    assert!(text.contains("which log belongs to which video"), "{text}");
+    assert_eq!(tasks, ["angles/S01", "angles/S02", "angles/S03", "force"]);
+    // One marker file is for all.
+    let all = [&three("video.mp4", "")[..], &three("log.csv", LOG), &[("markers.toml".to_owned(), MARKERS)]].concat();
+    let (text, tasks) = proposed(all);
+    assert_eq!(tasks.len(), 7, "{tasks:?}");
+    assert!(text.contains("all logs are trained on as sessions of one person"), "{text}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::look::Inventory;
-use super::shape::{NamePattern, shape};
+use super::shape::{NamePattern, Places, shape};
 
 /// How many names of a sort are listed.
 const TOLD: usize = 3;
@@ -21,6 +21,10 @@ impl Input {
     /// Whether any of these is of one recording with any of the others, which have all of its keys.
     fn meets(&self, others: &Self) -> bool {
         let (Some(own), Some(theirs)) = (&self.values, &others.values) else { return true };
+        // One file is of one of several recordings, and its name doesn't say of which.
+        if self.names.is_empty() && theirs.len() > 1 {
+            return false;
+        }
         let at = |name: &String| others.names.iter().position(|other| other == name);
         let Some(places) = self.names.iter().map(at).collect::<Option<Vec<usize>>>() else { return false };
         let are_one = |one: &[String], other: &[String]| places.iter().zip(one).all(|(&at, value)| other[at] == *value);
@@ -62,7 +66,7 @@ pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<String> {
 
 impl Draft<'_> {
     fn photographs(&mut self, found: &Inventory) {
-        let Some(photos) = self.files("photos", "photographs of nails", &found.photos, &["subject", "pose"]) else {
+        let Some(photos) = self.files("photos", "photographs of nails", &found.photos, Places::Nails) else {
             return;
         };
         if photos.names.is_empty() {
@@ -87,7 +91,7 @@ impl Draft<'_> {
             let _ = writeln!(self.inputs, "# All but the masks.\nwhere = {{ subject = [{subjects}] }}");
         }
         let without_masks = self.inputs.len();
-        let (outlines, of_masks) = match self.files("masks", "masks of nails", &found.masks, &["subject", "pose"]) {
+        let (outlines, of_masks) = match self.files("masks", "masks of nails", &found.masks, Places::Nails) {
             // A mask of each subject is the same in all poses.
             Some(masks) if masks.meets(&photos) => ("outlines = \"masks\"\n", "masks, "),
             Some(_) => {
@@ -134,12 +138,12 @@ impl Draft<'_> {
                 (column(&sessions.video), column(&sessions.markers), column(&sessions.log), column(&sessions.joints))
             }
             None => {
-                let names: &[&str] = &["session", "subject"];
+                let places = Places::Recordings;
                 (
-                    self.files("videos", "videos", &found.videos, names),
+                    self.files("videos", "videos", &found.videos, places),
                     None,
-                    self.files("logs", "logs of photodiodes", &found.logs, names),
-                    self.files("joints", "tables of angles", &found.joints, names),
+                    self.files("logs", "logs of photodiodes", &found.logs, places),
+                    self.files("joints", "tables of angles", &found.joints, places),
                 )
             }
         };
@@ -152,18 +156,27 @@ impl Draft<'_> {
     /// One marker file for all videos, or one beside each, or one for all that share a key.
     fn markers(&mut self, found: &Inventory, video: Option<&Input>) -> Option<Input> {
         let video = video?;
-        let own = shape(&found.markers, &["session"]).filter(|own| own.names.len() == 1);
+        let own = shape(&found.markers, Places::Recordings).filter(|own| own.names.len() == 1);
         let is_shared = |k: usize| {
             let all: BTreeSet<&String> = video.values.iter().flatten().map(|values| &values[k]).collect();
             own.as_ref().is_some_and(|own| own.values.iter().all(|values| all.contains(&values[0])))
         };
         let shared = (0..video.names.len()).find(|&k| is_shared(k)).map(|k| video.names[k].clone());
-        let names = shared.as_deref().map_or(vec!["session", "subject"], |shared| vec![shared]);
-        self.files("markers", "marker files", &found.markers, &names)
+        let places = shared.as_deref().map_or(Places::Recordings, Places::One);
+        self.files("markers", "marker files", &found.markers, places)
     }
 
     fn angles(&mut self, video: Option<Input>, markers: Option<Input>, joints: Option<Input>) -> Option<Input> {
         match (video, markers) {
+            (Some(video), Some(markers)) if !markers.names.is_empty() && !markers.meets(&video) => {
+                self.notes.push(
+                    "which marker file belongs to which video does not follow from their names, so no angles are \
+                     planned: put each beside its video, or list them in a table, a row per recording with columns \
+                     subject, session, video, markers, and run `lunula init` again"
+                        .to_owned(),
+                );
+                joints
+            }
             (Some(video), Some(markers)) => {
                 let _ = write!(
                     self.stages,
@@ -220,6 +233,13 @@ impl Draft<'_> {
     fn models(&mut self, found: &Inventory, log: Option<&Input>) {
         let Some(log) = log.filter(|_| found.forces) else { return };
         let each = if log.names.iter().any(|name| name == "subject") { "each = [\"subject\"]\n" } else { "" };
+        if log.names == ["session"] && log.values.is_some() {
+            self.notes.push(
+                "all logs are trained on as sessions of one person: where {session} is a person, write {subject} for \
+                 it throughout, and each = [\"subject\"] in [stage.force]"
+                    .to_owned(),
+            );
+        }
         let _ = write!(
             self.stages,
             "\n# Forces from the photodiodes; validate = .. names recordings to report on that are not trained \
@@ -230,8 +250,8 @@ impl Draft<'_> {
     }
 
     /// An input of files, if there are any.
-    fn files(&mut self, name: &str, what: &str, paths: &[String], innermost: &[&str]) -> Option<Input> {
-        let NamePattern { pattern, names, values, others } = shape(paths, innermost)?;
+    fn files(&mut self, name: &str, what: &str, paths: &[String], places: Places<'_>) -> Option<Input> {
+        let NamePattern { pattern, names, values, others } = shape(paths, places)?;
         self.notes.push(format!("{} {what}: {pattern}", values.len()));
         if !others.is_empty() {
             self.notes.push(format!("{what} that lie elsewhere, and are not used: {}", listed(&others)));

@@ -13,6 +13,8 @@ use ndarray::{ArrayView1, ArrayView2, Axis, Slice, concatenate};
 /// The least that is called standing still, rows and seconds; and as rows of the rest for each unknown (assumed).
 const ROWS: usize = 20;
 const SECONDS: f64 = 1.0;
+/// A force, or an angle, of so little of its range is at rest: a straight finger's that only presses (assumed).
+const NEAR_0: f64 = 0.01;
 /// The photodiodes know the column where they leave so much of its SD at most, and say that it moved where what they
 /// make of it has so much of its SD at least (assumed).
 const UNEXPLAINED: f64 = 0.6;
@@ -43,9 +45,46 @@ pub(super) fn warnings(data: &Dataset) -> Vec<String> {
                 run.len()
             )
         };
-        held.into_iter().map(say).collect::<Vec<_>>()
+        held.into_iter().map(say).chain(all_at_once(data, one)).collect::<Vec<_>>()
     };
     data.recordings().iter().flat_map(of_recording).collect()
+}
+
+/// What to say where all photodiodes stand still while what they answer to moves, as where what logs them hangs.
+fn all_at_once(data: &Dataset, one: &Recording) -> Option<String> {
+    let (x, rows) = (data.x(), one.rows.clone());
+    let stays = |row: &usize| *row > rows.start && x.row(*row) == x.row(*row - 1);
+    let mut longest = rows.start..rows.start;
+    let mut start = rows.start;
+    for row in rows.clone() {
+        start = if stays(&row) { start } else { row };
+        if row + 1 - start > longest.len() {
+            longest = start..row + 1;
+        }
+    }
+    let sd = |target: usize, rows: &Range<usize>| {
+        data.y().column(target).slice_axis(Axis(0), Slice::from(rows.clone())).std(0.0)
+    };
+    let moved = |target: &usize| sd(*target, &longest) >= MOVED * sd(*target, &rows) && sd(*target, &rows) > 0.0;
+    let moved: Vec<&str> =
+        (0..data.targets().len()).filter(moved).map(|target| data.targets()[target].as_str()).collect();
+    let is_one = data.inputs().len() > 1 && longest.len() < rows.len() && lasts(data, &longest) && !moved.is_empty();
+    is_one.then(|| {
+        let [from_s, to_s] = [longest.start, longest.end - 1].map(|row| data.time_s()[row]);
+        format!(
+            "{}: all photodiodes keep their values in {} rows, from {from_s:.1} to {to_s:.1} s, while {} moves: did \
+             what logs them hang?",
+            one.name,
+            longest.len(),
+            moved.join(", ")
+        )
+    })
+}
+
+/// Whether rows are enough to be called standing still.
+fn lasts(data: &Dataset, rows: &Range<usize>) -> bool {
+    let long = || data.time_s()[rows.end - 1] - data.time_s()[rows.start];
+    rows.len() >= ROWS && (long().is_nan() || long() >= SECONDS)
 }
 
 fn column(data: &Dataset, column: usize) -> ArrayView1<'_, f64> {
@@ -53,30 +92,28 @@ fn column(data: &Dataset, column: usize) -> ArrayView1<'_, f64> {
     if column < inputs { data.x().column(column) } else { data.y().column(column - inputs) }
 }
 
-/// The longest run of rows of a recording in which a column stays the same, neither 0 nor an end of its range at which
-/// it may rest.
+/// The longest run of rows of a recording in which a column stays the same, neither near 0 nor at an end of its range
+/// at which it may rest.
 fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>> {
     let values = column(data, k);
     let own = values.slice_axis(Axis(0), Slice::from(one.rows.clone()));
     let ends = own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [v.min(low), v.max(high)]);
     let is_target = k >= data.inputs().len();
+    let near = if is_target { NEAR_0 * (ends[1] - ends[0]) } else { 0.0 };
     // A transducer that hangs while the force grows shows the greatest of all.
-    let rests = |value: f64| ends.contains(&value) && !(is_target && ends.iter().any(|end| end.abs() < value.abs()));
+    let is_end = |value: f64| ends.contains(&value) && !(is_target && ends.iter().any(|end| end.abs() < value.abs()));
+    let rests = |value: f64| value.abs() <= near || is_end(value);
     let mut longest = one.rows.start..one.rows.start;
     let mut start = one.rows.start;
     for row in one.rows.clone() {
         if values[row] != values[start] {
             start = row;
         }
-        if row + 1 - start > longest.len() && values[row] != 0.0 && !rests(values[row]) {
+        if row + 1 - start > longest.len() && !rests(values[row]) {
             longest = start..row + 1;
         }
     }
-    let lasts = || {
-        let seconds = data.time_s()[longest.end - 1] - data.time_s()[longest.start];
-        seconds.is_nan() || seconds >= SECONDS
-    };
-    (longest.len() >= ROWS && lasts()).then_some(longest)
+    lasts(data, &longest).then_some(longest)
 }
 
 /// Whether the other photodiodes know a column, and say that it moved in a run of rows.

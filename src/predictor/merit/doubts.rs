@@ -31,7 +31,8 @@ pub(in crate::predictor) fn doubts(
     // Targets that go astray alike are one warning.
     let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
     for (k, target) in seen.targets().iter().enumerate() {
-        let Some(looks) = astray(seen.y().column(k), values.column(k)) else { continue };
+        let trained = predictor.targets().get(k).map(|channel| channel.high - channel.low);
+        let Some(looks) = astray(seen.y().column(k), values.column(k), trained) else { continue };
         match alike.iter_mut().find(|(others, _)| *others == looks) {
             Some((_, targets)) => targets.push(target),
             None => alike.push((looks, vec![target])),
@@ -94,8 +95,9 @@ pub(crate) fn extrapolated(outside: u64, rows: u64) -> Option<String> {
     })
 }
 
-/// What to say of a target that is predicted no better than by its mean, or in another unit.
-fn astray(measured: ArrayView1<'_, f64>, predicted: ArrayView1<'_, f64>) -> Option<String> {
+/// What to say of a target that is predicted no better than by its mean, or in another unit; it went over so much in
+/// training.
+fn astray(measured: ArrayView1<'_, f64>, predicted: ArrayView1<'_, f64>, trained: Option<f64>) -> Option<String> {
     let pairs = measured.iter().copied().zip(predicted.iter().copied());
     let pairs: Vec<(f64, f64)> = pairs.filter(|(m, p)| m.is_finite() && p.is_finite()).collect();
     let count = pairs.len() as f64;
@@ -116,8 +118,15 @@ fn astray(measured: ArrayView1<'_, f64>, predicted: ArrayView1<'_, f64>) -> Opti
     let [about, alone] = [both / other, mp / pp];
     let times = [(about, is_other(about, OTHER_UNIT)), (alone, is_gain && is_other(alone, OTHER_GAIN))];
     if let Some((times, _)) = times.into_iter().find(|(_, is_other)| follows && *is_other) {
-        let unit = "is it, or are the voltages, in another unit, or has one of them another gain?";
-        return Some(format!("what was measured is {times:.3} times what is predicted: {unit}"));
+        let ends = pairs.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], (m, _)| [l.min(*m), h.max(*m)]);
+        let as_trained = trained.is_some_and(|trained| !is_other((ends[1] - ends[0]) / trained, OTHER_GAIN));
+        let looks = if as_trained {
+            ", and goes as far as in training: are the voltages in another unit, or do the recordings that the model \
+             was trained on contradict each other?"
+        } else {
+            ": is it, or are the voltages, in another unit, or has one of them another gain?"
+        };
+        return Some(format!("what was measured is {times:.3} times what is predicted{looks}"));
     }
     let looks = match (follows, both > 0.0) {
         _ if errors < own => return None,
@@ -155,8 +164,15 @@ mod tests {
     fn what_goes_astray_says_what_it_looks_like() {
         let said = |of: &dyn Fn(f64) -> f64| {
             let force: Array1<f64> = (0..300).map(|k| -3.0 + 2.0 * (0.1 * f64::from(k)).sin()).collect();
-            astray(force.view(), force.mapv(of).view()).unwrap_or_default()
+            astray(force.view(), force.mapv(of).view(), None).unwrap_or_default()
         };
+        // A model that learnt little of it: the force itself is as in training.
+        let force: Array1<f64> = (0..300).map(|k| -3.0 + 2.0 * (0.1 * f64::from(k)).sin()).collect();
+        let shrunk = force.mapv(|force| -2.8 + 0.1 * force);
+        let alike = astray(force.view(), shrunk.view(), Some(4.2)).unwrap_or_default();
+        assert!(alike.contains("10.000 times what is predicted, and goes as far as in training"), "{alike}");
+        let other = astray(force.view(), shrunk.view(), Some(42.0)).unwrap_or_default();
+        assert!(other.contains("is it, or are the voltages, in another unit"), "{other}");
         assert_eq!(said(&|force| force), "");
         assert_eq!(said(&|force| 0.8 * force - 0.5), "");
         assert!(said(&|force| -force).contains("but for the sign"), "{}", said(&|force| -force));
@@ -177,7 +193,7 @@ mod tests {
         assert_eq!(said(&|_| f64::NAN), "", "that there are no answers is said elsewhere");
         // Of a target that does not change but for rounding, and of a few rows, there is nothing to tell.
         let constant = Array1::from_elem(30, 0.1);
-        assert_eq!(astray(constant.view(), (&constant + 1.0).view()), None);
-        assert_eq!(astray(ndarray::arr1(&[1.0, 2.0]).view(), ndarray::arr1(&[2.0, 1.0]).view()), None);
+        assert_eq!(astray(constant.view(), (&constant + 1.0).view(), None), None);
+        assert_eq!(astray(ndarray::arr1(&[1.0, 2.0]).view(), ndarray::arr1(&[2.0, 1.0]).view(), None), None);
     }
 }
