@@ -84,7 +84,7 @@ impl Job for AlignJob {
             Part::if_wanted(PICTURES, "training-labels.png"),
         ],
     )
-    .revision(7);
+    .revision(8);
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         match role {
