@@ -465,3 +465,19 @@ fn what_other_programs_write_above_the_names_is_not_read() {
     let error = read(format!("Logger 7\nfor the nail\n{}", rows(1.0)), &wanted).unwrap_err().to_string();
     assert!(error.contains("a.csv"), "{error}");
 }
+
+#[test]
+fn a_photodiode_that_is_anothers_copy_is_named() {
+    let of = |copied: bool| {
+        let mut text = "P1,P2,P3,J2_deg\n".to_owned();
+        for k in 0..60 {
+            let p = [1, 2].map(|p| 2.0 + 0.01 * f64::from((7 * k * p) % 31));
+            let third = if copied { p[1] } else { p[0] + p[1] };
+            let _ = writeln!(text, "{},{},{third},{k}", p[0], p[1]);
+        }
+        read(&text, &angle()).unwrap().warnings
+    };
+    assert_eq!(of(false), Vec::<String>::new());
+    let said = of(true);
+    assert!(said.len() == 1 && said[0].contains("P3 is P2 in all rows: is one of them a copy"), "{said:?}");
+}
