@@ -265,10 +265,8 @@ mod tests {
     #[test]
     fn a_second_is_no_rate_and_half_a_second_no_agreement_without_a_word() {
         for seed in [5, 6] {
-            let [(posture, samples), _] = [seed, seed].map(|seed| {
-                let pressing = ForceTrajectory::Random { hz: 0.1, seed: seed + 100 };
-                phantom(seed, Trajectory::Random { hz: 0.1, seed }, pressing)
-            });
+            let pressing = ForceTrajectory::Random { hz: 0.1, seed: seed + 100 };
+            let (posture, samples) = phantom(seed, Trajectory::Random { hz: 0.1, seed }, pressing);
             let at = |offset_s: f64| compare(&posture, &samples, &by_offset(offset_s, None).unwrap());
             for offset_s in [59.0, 61.0] {
                 let said = at(offset_s).warnings.concat();
@@ -315,18 +313,21 @@ mod tests {
             let warned = |seed: u64| {
                 let (posture, own) = of(seed);
                 let (_, other) = of(seed + 1);
-                let at = [(&own, 60.0, 1.0), (&other, 60.0, 1.0), (&own, 59.0, 1.0), (&own, 61.0, 1.0)];
-                at.into_iter()
-                    .chain([(&own, 60.0, 25.0 / 24.0)])
-                    .map(|(log, offset_s, rate)| {
-                        let time_s = log.time_s.iter().map(|t| 60.0 + (t - 60.0) * rate).collect();
-                        let tie = by_offset(offset_s, None).unwrap();
-                        let said = compare(&posture, &Samples { time_s, ..log.clone() }, &tie).warnings.concat();
-                        [!said.is_empty(), said.contains("times as fast")].map(u64::from)
-                    })
-                    .collect::<Vec<[u64; 2]>>()
+                let ties = [
+                    (&own, 60.0, 1.0),
+                    (&other, 60.0, 1.0),
+                    (&own, 59.0, 1.0),
+                    (&own, 61.0, 1.0),
+                    (&own, 60.0, 25.0 / 24.0),
+                ];
+                ties.map(|(log, offset_s, rate)| {
+                    let time_s = log.time_s.iter().map(|t| 60.0 + (t - 60.0) * rate).collect();
+                    let tie = by_offset(offset_s, None).unwrap();
+                    let said = compare(&posture, &Samples { time_s, ..log.clone() }, &tie).warnings.concat();
+                    [!said.is_empty(), said.contains("times as fast")].map(u64::from)
+                })
             };
-            let all: Vec<Vec<[u64; 2]>> = (0..SEEDS).into_par_iter().map(warned).collect();
+            let all: Vec<[[u64; 2]; 5]> = (0..SEEDS).into_par_iter().map(warned).collect();
             let sum = |k: usize, what: usize| all.iter().map(|warned| warned[k][what]).sum::<u64>();
             let [counts, rates] = [0, 1].map(|what| [0, 1, 2, 3, 4].map(|k| sum(k, what)));
             println!("{name}: of {SEEDS} own, others, late, early, at another rate: {counts:?}, a rate: {rates:?}");

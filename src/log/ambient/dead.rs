@@ -145,8 +145,7 @@ const ALL: &str = "all photodiodes that a model reads";
 impl Standing {
     /// Of channels of these names.
     pub(crate) fn new(names: &[String]) -> Self {
-        let still = |channels| Still::new(channels);
-        Self { names: names.to_vec(), all: still(names.len()), each: names.iter().map(|_| still(1)).collect() }
+        Self { names: names.to_vec(), all: Still::new(names.len()), each: vec![Still::new(1); names.len()] }
     }
 
     /// A lit sample; what has just been seen to stand still for the first time.

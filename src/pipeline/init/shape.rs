@@ -16,7 +16,7 @@ pub(super) struct NamePattern {
 
 /// How the places of a pattern are called.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Places<'a> {
+pub(super) enum PlaceNames<'a> {
     /// Of nails: from the last one on subject, pose.
     Nails,
     /// Of recordings: from the first one on subject, session, trial; a single one is a session.
@@ -25,7 +25,7 @@ pub(super) enum Places<'a> {
     One(&'a str),
 }
 
-impl Places<'_> {
+impl PlaceNames<'_> {
     fn name(self, place: usize, count: usize) -> String {
         let (names, at): (&[&str], usize) = match self {
             Self::Nails => (&["subject", "pose"], count - 1 - place),
@@ -38,7 +38,7 @@ impl Places<'_> {
 }
 
 /// The pattern of most of the files.
-pub(super) fn shape(paths: &[String], places: Places<'_>) -> Option<NamePattern> {
+pub(super) fn shape(paths: &[String], places: PlaceNames<'_>) -> Option<NamePattern> {
     // Files of one depth, ending and top folder are of one pattern.
     let mut groups: BTreeMap<(usize, String, bool), Vec<&String>> = BTreeMap::new();
     for path in paths {

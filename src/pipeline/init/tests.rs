@@ -1,6 +1,6 @@
 //! Pipelines for folders of files that are what their names and headers say.
 
-use super::shape::{Places, shape};
+use super::shape::{PlaceNames, shape};
 use super::{InitError, propose};
 use crate::pipeline::{Plan, Spec, kinds};
 
@@ -29,11 +29,11 @@ fn proposed(files: &[(&str, &str)]) -> (String, Vec<String>) {
 
 #[test]
 fn names_that_differ_become_places() {
-    let of = |paths: &[&str], places: Places<'_>| {
+    let of = |paths: &[&str], places: PlaceNames<'_>| {
         let paths: Vec<String> = paths.iter().map(|path| (*path).to_owned()).collect();
         shape(&paths, places).map(|shape| (shape.pattern, shape.others.len()))
     };
-    let shaped = |paths: &[&str]| of(paths, Places::Nails);
+    let shaped = |paths: &[&str]| of(paths, PlaceNames::Nails);
     assert_eq!(shaped(&["p/rest/a.png", "p/press/b.png"]), Some(("p/{pose}/{subject}.png".into(), 0)));
     assert_eq!(shaped(&["a.png", "b.png", "deep/c.png"]), Some(("{subject}.png".into(), 1)));
     assert_eq!(shaped(&["one[1].png"]), Some(("one?1?.png".into(), 0)));
@@ -41,7 +41,7 @@ fn names_that_differ_become_places() {
     assert_eq!(shaped(&["1/2/a.x", "3/4/b.x"]), Some(("{part3}/{pose}/{subject}.x".into(), 0)));
     assert_eq!(shaped(&[]), None);
     // The outermost place of recordings is the person, whatever lies below.
-    let recordings = |paths: &[&str]| of(paths, Places::Recordings).unwrap().0;
+    let recordings = |paths: &[&str]| of(paths, PlaceNames::Recordings).unwrap().0;
     assert_eq!(recordings(&["anna/1/v.mp4", "ben/2/v.mp4"]), "{subject}/{session}/v.mp4");
     assert_eq!(recordings(&["anna/1/a.csv", "ben/2/b.csv"]), "{subject}/{session}/{trial}.csv");
     assert_eq!(recordings(&["a/b/c/d.csv", "e/f/g/h.csv"]), "{subject}/{session}/{trial}/{part4}.csv");

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::look::Inventory;
-use super::shape::{NamePattern, Places, shape};
+use super::shape::{NamePattern, PlaceNames, shape};
 
 /// How many names of a sort are listed.
 const TOLD: usize = 3;
@@ -66,7 +66,7 @@ pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<String> {
 
 impl Draft<'_> {
     fn photographs(&mut self, found: &Inventory) {
-        let Some(photos) = self.files("photos", "photographs of nails", &found.photos, Places::Nails) else {
+        let Some(photos) = self.files("photos", "photographs of nails", &found.photos, PlaceNames::Nails) else {
             return;
         };
         if photos.names.is_empty() {
@@ -91,7 +91,7 @@ impl Draft<'_> {
             let _ = writeln!(self.inputs, "# All but the masks.\nwhere = {{ subject = [{subjects}] }}");
         }
         let without_masks = self.inputs.len();
-        let (outlines, of_masks) = match self.files("masks", "masks of nails", &found.masks, Places::Nails) {
+        let (outlines, of_masks) = match self.files("masks", "masks of nails", &found.masks, PlaceNames::Nails) {
             // A mask of each subject is the same in all poses.
             Some(masks) if masks.meets(&photos) => ("outlines = \"masks\"\n", "masks, "),
             Some(_) => {
@@ -138,7 +138,7 @@ impl Draft<'_> {
                 (column(&sessions.video), column(&sessions.markers), column(&sessions.log), column(&sessions.joints))
             }
             None => {
-                let places = Places::Recordings;
+                let places = PlaceNames::Recordings;
                 (
                     self.files("videos", "videos", &found.videos, places),
                     None,
@@ -156,13 +156,13 @@ impl Draft<'_> {
     /// One marker file for all videos, or one beside each, or one for all that share a key.
     fn markers(&mut self, found: &Inventory, video: Option<&Input>) -> Option<Input> {
         let video = video?;
-        let own = shape(&found.markers, Places::Recordings).filter(|own| own.names.len() == 1);
+        let own = shape(&found.markers, PlaceNames::Recordings).filter(|own| own.names.len() == 1);
         let is_shared = |k: usize| {
             let all: BTreeSet<&String> = video.values.iter().flatten().map(|values| &values[k]).collect();
             own.as_ref().is_some_and(|own| own.values.iter().all(|values| all.contains(&values[0])))
         };
         let shared = (0..video.names.len()).find(|&k| is_shared(k)).map(|k| video.names[k].clone());
-        let places = shared.as_deref().map_or(Places::Recordings, Places::One);
+        let places = shared.as_deref().map_or(PlaceNames::Recordings, PlaceNames::One);
         self.files("markers", "marker files", &found.markers, places)
     }
 
@@ -250,7 +250,7 @@ impl Draft<'_> {
     }
 
     /// An input of files, if there are any.
-    fn files(&mut self, name: &str, what: &str, paths: &[String], places: Places<'_>) -> Option<Input> {
+    fn files(&mut self, name: &str, what: &str, paths: &[String], places: PlaceNames<'_>) -> Option<Input> {
         let NamePattern { pattern, names, values, others } = shape(paths, places)?;
         self.notes.push(format!("{} {what}: {pattern}", values.len()));
         if !others.is_empty() {

@@ -53,15 +53,7 @@ pub(super) fn warnings(data: &Dataset) -> Vec<String> {
 /// What to say where all photodiodes stand still while what they answer to moves, as where what logs them hangs.
 fn all_at_once(data: &Dataset, one: &Recording) -> Option<String> {
     let (x, rows) = (data.x(), one.rows.clone());
-    let stays = |row: &usize| *row > rows.start && x.row(*row) == x.row(*row - 1);
-    let mut longest = rows.start..rows.start;
-    let mut start = rows.start;
-    for row in rows.clone() {
-        start = if stays(&row) { start } else { row };
-        if row + 1 - start > longest.len() {
-            longest = start..row + 1;
-        }
-    }
+    let longest = longest(&rows, |row| x.row(row) == x.row(row - 1), |_| true);
     let sd = |target: usize, rows: &Range<usize>| {
         data.y().column(target).slice_axis(Axis(0), Slice::from(rows.clone())).std(0.0)
     };
@@ -79,6 +71,20 @@ fn all_at_once(data: &Dataset, one: &Recording) -> Option<String> {
             moved.join(", ")
         )
     })
+}
+
+/// The longest run of rows, the first of equals, each of which counts and is as the one before.
+fn longest(rows: &Range<usize>, is_same: impl Fn(usize) -> bool, counts: impl Fn(usize) -> bool) -> Range<usize> {
+    let (mut longest, mut start) = (rows.start..rows.start, rows.start);
+    for row in rows.clone() {
+        if row > rows.start && !is_same(row) {
+            start = row;
+        }
+        if row + 1 - start > longest.len() && counts(row) {
+            longest = start..row + 1;
+        }
+    }
+    longest
 }
 
 /// Whether rows are enough to be called standing still.
@@ -103,16 +109,7 @@ fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>
     // A transducer that hangs while the force grows shows the greatest of all.
     let is_end = |value: f64| ends.contains(&value) && !(is_target && ends.iter().any(|end| end.abs() < value.abs()));
     let rests = |value: f64| value.abs() <= near || is_end(value);
-    let mut longest = one.rows.start..one.rows.start;
-    let mut start = one.rows.start;
-    for row in one.rows.clone() {
-        if values[row] != values[start] {
-            start = row;
-        }
-        if row + 1 - start > longest.len() && !rests(values[row]) {
-            longest = start..row + 1;
-        }
-    }
+    let longest = longest(&one.rows, |row| values[row] == values[row - 1], |row| !rests(values[row]));
     lasts(data, &longest).then_some(longest)
 }
 

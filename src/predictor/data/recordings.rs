@@ -54,7 +54,6 @@ impl<'a> Splitter<'a> {
     pub(super) fn finish(self, recordings: &mut Vec<Recording>, warnings: &mut Vec<String>) {
         let DataFile { path, name: file, session: own_session, subject: own_subject } = self.called;
         let several = self.starts.len() > 1;
-        let (mut other_session, mut other_subject) = (false, false);
         for (k, &(start, group)) in self.starts.iter().enumerate() {
             let end = self.starts.get(k + 1).map_or(self.taken, |next| next.0);
             let [session, subject, trajectory] = group.map(|g| self.source.groups[g].1.clone()).unwrap_or_default();
@@ -63,20 +62,6 @@ impl<'a> Splitter<'a> {
                 Some(own) => own.clone(),
                 None => file.clone(),
             };
-            for (key, said, own, warned) in [
-                ("session", &session, own_session, &mut other_session),
-                ("subject", &subject, own_subject, &mut other_subject),
-            ] {
-                let other = own.as_ref().filter(|own| !said.is_empty() && *own != said && !*warned);
-                warnings.extend(other.map(|own| {
-                    *warned = true;
-                    format!(
-                        "{}: its column `{key}` says `{said}`, which is taken, and it was given as that of `{own}`: is \
-                         it in the right place?",
-                        path.display()
-                    )
-                }));
-            }
             let (session, subject) = (or_own(session, own_session), or_own(subject, own_subject));
             let name = match (trajectory.is_empty(), several) {
                 (false, _) => format!("{file} ({trajectory})"),
@@ -84,6 +69,18 @@ impl<'a> Splitter<'a> {
                 (true, false) => file.clone(),
             };
             recordings.push(Recording { name, session, subject, rows: start..end });
+        }
+        let groups = || self.starts.iter().filter_map(|(_, group)| Some(&self.source.groups[(*group)?].1));
+        for (key, place, own) in [("session", 0, own_session), ("subject", 1, own_subject)] {
+            let Some(own) = own else { continue };
+            let other = groups().map(|group| &group[place]).find(|said| !said.is_empty() && *said != own);
+            warnings.extend(other.map(|said| {
+                format!(
+                    "{}: its column `{key}` says `{said}`, which is taken, and it was given as that of `{own}`: is it \
+                     in the right place?",
+                    path.display()
+                )
+            }));
         }
         if let Some([from, to]) = self.resets.first() {
             let count = self.resets.len();
