@@ -27,7 +27,7 @@ pub(super) fn place_px(config: &Config, shear_n: [f64; 2]) -> [f64; 2] {
 
 /// The shear, newtons without its dead zone, for a speed of up to the cap: the inverse of the curve, which a person
 /// learns.
-#[must_use]
+#[cfg(test)]
 pub(in super::super) fn shear_for_n(config: &Config, speed_px_per_s: f64) -> f64 {
     let speed = speed_px_per_s.clamp(0.0, config.cap_px_per_s);
     let at_knee = config.gain_low_px_per_s_per_n * config.knee_n;
@@ -46,6 +46,7 @@ pub(super) fn on_screen(config: &Config, [fx_n, fy_n]: [f64; 2]) -> [f64; 2] {
 }
 
 /// The sensor's axes of a shear that a person intends on the screen's: the inverse of [`on_screen`].
+#[cfg(test)]
 pub(in super::super) fn off_screen(config: &Config, [x_n, y_n]: [f64; 2]) -> [f64; 2] {
     let (sin, cos) = config.turn_deg.to_radians().sin_cos();
     let fx_n = cos * x_n - sin * y_n;

@@ -19,6 +19,7 @@ mod motion;
 mod scroll;
 mod zero;
 
+#[cfg(test)]
 pub(super) use gain::{off_screen, shear_for_n};
 
 use super::config::Config;

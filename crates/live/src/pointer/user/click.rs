@@ -13,32 +13,32 @@ const RESTS_S: f64 = 2.0;
 
 /// Distances of many clicks, px.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
+pub(super) struct Spread {
     /// The median.
     pub p50: f64,
     /// What 95 % do not exceed.
     pub p95: f64,
     /// The greatest.
-    pub most: f64,
+    pub(super) most: f64,
 }
 
 /// Displacements by clicks of a finger that otherwise rests.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Displacement {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Displacement {
     /// Presses that clicked once, which is what the distances are of.
-    pub clicks: usize,
+    pub(super) clicks: usize,
     /// Presses that did not click.
-    pub missed: usize,
+    pub(super) missed: usize,
     /// Clicks beyond the first of a press, and clicks without one.
-    pub extra: usize,
+    pub(super) extra: usize,
     /// From where the pointer was when the finger began to press to where it clicked; none without clicks.
-    pub at_down_px: Option<Spread>,
+    pub(super) at_down_px: Option<Spread>,
     /// To where it was when all had settled again.
-    pub settled_px: Option<Spread>,
+    pub(super) settled_px: Option<Spread>,
 }
 
 /// Presses a number of times, each with shear of its own size and direction.
-pub fn click_displacement(
+pub(super) fn click_displacement(
     config: &Config,
     person: &Person,
     presses: usize,

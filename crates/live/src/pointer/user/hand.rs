@@ -38,7 +38,7 @@ pub(super) struct Target {
 #[derive(Debug, Clone, Copy)]
 struct Sight {
     pointer_px: [f64; 2],
-    target: Option<Target>,
+    target: Target,
     /// The speed that was intended then, px/s.
     foreseen_px_per_s: [f64; 2],
 }
@@ -92,11 +92,6 @@ impl Hand {
         }
     }
 
-    /// Whether a press is under way.
-    pub(super) fn presses(&self) -> bool {
-        self.press.is_some()
-    }
-
     /// Begins a press: forth, for a while, and back.
     pub(super) fn press(&mut self, t_s: f64) {
         let turn = TAU * self.rng.random_range(0.0..1.0_f64);
@@ -104,8 +99,8 @@ impl Hand {
         self.press = Some(Press { began_s: t_s, slip: [size * turn.cos(), size * turn.sin()] });
     }
 
-    /// The force that aims at a target and clicks it; without one, that of a finger that rests.
-    pub(super) fn aim(&mut self, t_s: f64, pointer_px: [f64; 2], target: Option<Target>) -> [f64; 3] {
+    /// The force that aims at a target and clicks it.
+    pub(super) fn aim(&mut self, t_s: f64, pointer_px: [f64; 2], target: Target) -> [f64; 3] {
         self.seen.push_back(Sight { pointer_px, target, foreseen_px_per_s: self.foreseen_px_per_s });
         let late = (self.person.delay_s * RATE_HZ).round() as usize;
         let intended_px_per_s = if self.seen.len() > late { self.judge(t_s) } else { [0.0; 2] };
@@ -157,8 +152,8 @@ impl Hand {
     /// What the person makes of what is seen: the speed that is intended, px/s; a press begins where the pointer rests
     /// on the target.
     fn judge(&mut self, t_s: f64) -> [f64; 2] {
-        let Some(Sight { pointer_px, target: Some(target), .. }) = self.seen.pop_front() else { return [0.0; 2] };
-        if self.presses() {
+        let Some(Sight { pointer_px, target, .. }) = self.seen.pop_front() else { return [0.0; 2] };
+        if self.press.is_some() {
             self.rests_since_s = None;
             return [0.0; 2];
         }

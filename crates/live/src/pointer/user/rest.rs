@@ -18,29 +18,25 @@ const SWAY_N: f64 = 0.35;
 const SWAY_S: f64 = 0.5;
 
 /// Motion at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rest {
     /// Counts to the sides and up and down, all taken as positive.
-    pub counts: u64,
-    /// Over so long.
-    pub minutes: f64,
-    /// One by the other.
-    pub counts_per_minute: f64,
+    pub(super) counts: u64,
+    /// The same a minute.
+    pub(super) counts_per_minute: f64,
 }
 
 /// Clicks that nobody meant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inadvertent {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inadvertent {
     /// Times that the button went down.
-    pub clicks: u64,
-    /// Over so long.
-    pub hours: f64,
-    /// With its exact interval; none without time.
-    pub rate: Option<Rate>,
+    pub(super) clicks: u64,
+    /// Clicks an hour with their exact interval; none without time.
+    pub(super) rate: Option<Rate>,
 }
 
 /// A force that stays, after a time in the air.
-pub fn rest_drift(
+pub(super) fn rest_drift(
     config: &Config,
     force_n: [f64; 3],
     minutes: f64,
@@ -60,11 +56,11 @@ pub fn rest_drift(
             }
         });
     }
-    Rest { counts, minutes, counts_per_minute: counts as f64 / minutes }
+    Rest { counts, counts_per_minute: counts as f64 / minutes }
 }
 
 /// A person who moves the pointer about and presses no click.
-pub fn inadvertent_clicks(
+pub(super) fn inadvertent_clicks(
     config: &Config,
     person: &Person,
     hours: f64,
@@ -83,5 +79,5 @@ pub fn inadvertent_clicks(
             clicks += u64::from(matches!(event, Event::Button { down: true, .. }));
         });
     }
-    Inadvertent { clicks, hours, rate: rate_per_hour(clicks, hours) }
+    Inadvertent { clicks, rate: rate_per_hour(clicks, hours) }
 }

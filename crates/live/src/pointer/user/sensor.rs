@@ -5,19 +5,19 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// True force to predicted force: a first-order lag and noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SensorModel {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SensorModel {
     /// Time constant of the blood in the nail, s; 0: none. The thesis' is about 0.2 s when pressing (4.4).
-    pub lag_s: f64,
+    pub(super) lag_s: f64,
     /// SD of the error of each axis, N.
-    pub noise_n: f64,
+    pub(super) noise_n: f64,
     /// Time constant of the error, s; 0: white.
-    pub noise_time_s: f64,
+    pub(super) noise_time_s: f64,
 }
 
 impl SensorModel {
     /// The sensor with the noise of a seed; forces come at a steady rate.
-    pub fn seeded(self, seed: u64) -> impl FnMut(f64, [f64; 3]) -> [f64; 3] {
+    pub(super) fn seeded(self, seed: u64) -> impl FnMut(f64, [f64; 3]) -> [f64; 3] {
         let mut noise = Noise::<3>::new(self.noise_n, self.noise_time_s, seed, 1 << 32);
         let mut last: Option<(f64, [f64; 3])> = None;
         move |t_s, force_n| {

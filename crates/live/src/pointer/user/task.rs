@@ -5,16 +5,16 @@ use std::f64::consts::TAU;
 use super::hand::Target;
 
 /// Distances and widths of the targets; every pair of them is a condition.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Task {
+#[derive(Debug, Clone)]
+pub(super) struct Task {
     /// Targets of a ring: an odd number, 3 at least.
-    pub targets: usize,
+    pub(super) targets: usize,
     /// Diameters of the ring, px.
-    pub distances_px: Vec<f64>,
+    pub(super) distances_px: Vec<f64>,
     /// Diameters of a target, px.
-    pub widths_px: Vec<f64>,
+    pub(super) widths_px: Vec<f64>,
     /// A target that was not hit after so long is given up, s.
-    pub patience_s: f64,
+    pub(super) patience_s: f64,
 }
 
 impl Default for Task {

@@ -1,8 +1,13 @@
 //! Figures of the simulated person, and that they can be trusted. They print what they measure: `cargo test -p
 //! lunula-live --lib pointer:: -- --nocapture`.
 
+use super::click::click_displacement;
+use super::person::Person;
+use super::rest::{inadvertent_clicks, rest_drift};
+use super::sensor::SensorModel;
 use super::task::Task;
-use super::*;
+use super::throughput::{Throughput, throughput};
+use super::{RATE_HZ, hand};
 use crate::pointer::{Click, Config, Mode};
 
 /// A sensor as good as one may hope for: late by two samples, a quarter of the noise that the defaults are made for.
@@ -121,13 +126,13 @@ fn at_rest_nothing_moves() {
     for (name, model) in [("noise of 0.2 s", SLOW), ("white noise", WHITE)] {
         let air = rest_drift(&config, [0.0; 3], MINUTES, model.seeded(1));
         let light = rest_drift(&config, [0.0, 0.05, -0.8], MINUTES, model.seeded(2));
-        println!("at rest, {name} of 0.05 N: in the air {air:?}, touching {light:?}");
+        println!("at rest for {MINUTES} min, {name} of 0.05 N: in the air {air:?}, touching {light:?}");
         assert_eq!((air.counts, light.counts), (0, 0));
     }
     // A dead zone of 2 SD is too small, and pushing moves: the measure can fail.
     let narrow = rest_drift(&Config { dead_zone_n: 0.1, ..config }, [0.0, 0.05, -0.8], 10.0, SLOW.seeded(2));
     let pushed = rest_drift(&config, [0.3, 0.0, -0.8], 1.0, |_, force| force);
-    println!("at rest, dead zone of 0.1 N: {narrow:?}");
+    println!("at rest for 10 min, dead zone of 0.1 N: {narrow:?}");
     assert!(narrow.counts > 100, "{narrow:?}");
     // 0.05 N beyond the dead zone at 400 px/s per N is 20 px/s, for a minute.
     assert!(pushed.counts.abs_diff(1200) <= 2 && pushed.counts_per_minute == pushed.counts as f64, "{pushed:?}");
@@ -137,7 +142,7 @@ fn at_rest_nothing_moves() {
 fn moving_about_clicks_nothing() {
     let (config, person) = (Config::default(), Person::default());
     let got = inadvertent_clicks(&config, &person, 5.0, 5, SLOW.seeded(5));
-    println!("moving about: {got:?}");
+    println!("moving about for 5 h: {got:?}");
     assert_eq!(got.clicks, 0);
     assert!(got.rate.unwrap().high <= 1.0);
     // A threshold just above the pressing of who moves.

@@ -17,39 +17,39 @@ const LIFTED_S: f64 = 3.0;
 
 /// What persons achieve.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Throughput {
+pub(super) struct Throughput {
     /// The mean, bits/s; none where a target was given up, or nothing can be made of it.
-    pub bits_per_s: Option<f64>,
+    pub(super) bits_per_s: Option<f64>,
     /// Its standard error between persons, bits/s; none of fewer than two.
-    pub standard_error: Option<f64>,
+    pub(super) standard_error: Option<f64>,
     /// Targets that were given up.
-    pub given_up: usize,
+    pub(super) given_up: usize,
     /// The conditions, means over persons.
-    pub conditions: Vec<Condition>,
+    pub(super) conditions: Vec<Condition>,
 }
 
 /// A condition's means.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Condition {
+pub(super) struct Condition {
     /// Diameter of the ring, px.
-    pub distance_px: f64,
+    pub(super) distance_px: f64,
     /// Diameter of a target, px.
-    pub width_px: f64,
+    pub(super) width_px: f64,
     /// W_e, px.
-    pub effective_width_px: f64,
+    pub(super) effective_width_px: f64,
     /// D_e, px.
-    pub effective_distance_px: f64,
+    pub(super) effective_distance_px: f64,
     /// MT, s.
-    pub movement_s: f64,
+    pub(super) movement_s: f64,
     /// The share of clicks beside the target.
-    pub missed: f64,
+    pub(super) missed: f64,
     /// ID_e / MT, bits/s.
-    pub bits_per_s: f64,
+    pub(super) bits_per_s: f64,
 }
 
 /// The throughput of one person for each seed; `sensor` makes each person's. Only of the mode `velocity`, whose curve
 /// the simulated person has learned: none of another, and none without clicks by pressing.
-pub fn throughput<S>(
+pub(super) fn throughput<S>(
     config: &Config,
     person: &Person,
     task: &Task,
@@ -138,7 +138,7 @@ impl<S: FnMut(f64, [f64; 3]) -> [f64; 3]> Desk<S> {
         for target in task.targets(distance_px, width_px) {
             let shown_s = self.t_s();
             let at_px = loop {
-                let force_n = self.hand.aim(self.t_s(), self.at.map(|count| count as f64), Some(target));
+                let force_n = self.hand.aim(self.t_s(), self.at.map(|count| count as f64), target);
                 if let Some(at_px) = self.feel(force_n) {
                     break at_px;
                 }
