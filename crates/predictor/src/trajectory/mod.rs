@@ -10,7 +10,7 @@
 //! | equation | here |
 //! |---|---|
 //! | 19, % error = F' tau / F = f tau | [`rate_limit_per_s`], [`rate_limits`] |
-//! | 20, dt = a F_z dF_z | [`Spiral::density_s_per_n2`] |
+//! | 20, dt = a F_z dF_z | a = 2 T / N_max^2 for equation 21 |
 //! | 21 to 23, the spiral | [`Spiral`] |
 //! | 24, 2 pi f_c < f | [`circling_limit_hz`] |
 //! | 25, the radial rate's maximum | `Spiral::radial_rate_{printed,true,max}_n_per_s` |

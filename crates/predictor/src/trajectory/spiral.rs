@@ -115,12 +115,6 @@ impl Spiral {
         [left * shear_n * sin, left * shear_n * cos, -left * pressing_n]
     }
 
-    /// a of equation 20, seconds a newton squared: at the pressing N it takes a N seconds a newton.
-    #[must_use]
-    pub fn density_s_per_n2(&self) -> f64 {
-        2.0 * self.duration_s / (self.fz_max_n * self.fz_max_n)
-    }
-
     /// Equation 25 as printed: A, half of the true maximum.
     #[must_use]
     pub fn radial_rate_printed_n_per_s(&self) -> f64 {
@@ -248,19 +242,6 @@ mod tests {
             }
         }
         assert_eq!((printed().pressing_rate_n_per_s(0.0), printed().pressing_rate_n_per_s(-1.0)), (f64::INFINITY, 0.0));
-    }
-
-    #[test]
-    fn the_time_spent_at_a_pressing_grows_with_it() {
-        // Equation 20 integrated between two pressings is the time between them.
-        let spiral = printed();
-        let at = |pressing_n: f64| 180.0 * (pressing_n / 3.0f64).powi(2);
-        for [low, high] in [[0.1, 0.2], [1.0, 1.5], [2.0, 3.0]] {
-            let integral = 0.5 * spiral.density_s_per_n2() * (high * high - low * low);
-            assert!(
-                (integral - (at(high) - at(low))).abs() <= 1e-9 && (spiral.pressing_n(at(high)) - high).abs() <= 1e-12
-            );
-        }
     }
 
     #[test]
