@@ -15,8 +15,8 @@ use crate::predictor::GateChoices;
 #[derive(Debug, Clone, Args)]
 pub struct StreamOptions {
     /// Where samples come from: serial:/dev/ttyACM0?baud=921600, serial:auto, tcp:HOST:PORT, tcp-listen:ADDRESS:PORT,
-    /// udp:PORT, lsl:name=NAME, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1; once for each finger, as
-    /// index=SOURCE
+    /// udp:PORT, lsl:name=NAME, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1; of several fingers
+    /// once for each, as index=SOURCE
     #[arg(long, required = true, value_name = "[FINGER=]SOURCE", value_parser = str::parse::<OfFinger<Address>>)]
     pub source: Vec<OfFinger<Address>>,
     /// A force transducer that is a device of its own: its columns are recorded at the times of the sensor's samples

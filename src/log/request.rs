@@ -27,7 +27,7 @@ struct LogOptions {
     )]
     full_scale: Option<[f64; 2]>,
     /// Which unlit light is taken away from a lit row: interpolated (at its own time, between the unlit rows around) or
-    /// preceding (the unlit row before it, as `lunula live` does) [default: interpolated]
+    /// preceding (the unlit row before it, as a live sensor is always read) [default: interpolated]
     #[arg(long, help_heading = "Logs", value_name = "RULE", value_parser = one_of::<AmbientRule>())]
     ambient: Option<AmbientRule>,
     /// Of a log whose clock was reset, which stretch to take, from 1

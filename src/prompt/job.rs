@@ -194,7 +194,7 @@ impl Prompter {
         let space = shared.run.protocol().space;
         drop(shared);
         let mut places = Places::not_over(self.files.protocol.iter());
-        if let Some(extra) = &report.extra {
+        if let Some(extra) = report.extra.as_ref().filter(|_| is_recorded) {
             let at = beside(&self.files.out, ".extra.toml");
             places.write(&at, &extra.toml(&space))?;
             report.extra_file = Some(at);

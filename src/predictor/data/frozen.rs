@@ -10,6 +10,8 @@ use std::ops::Range;
 use lunula_predictor::{Dataset, Deficient, LeastSquaresOptions, Recording, least_squares};
 use ndarray::{ArrayView1, ArrayView2, Axis, Slice, concatenate};
 
+use super::health::called;
+
 /// The least that is called standing still, rows and seconds; and as rows of the rest for each unknown (assumed).
 const ROWS: usize = 20;
 const SECONDS: f64 = 1.0;
@@ -38,11 +40,11 @@ pub(super) fn warnings(data: &Dataset) -> Vec<String> {
             let [from, to] = [run.start, run.end - 1].map(|row| data.time_s()[row]);
             let when = if from.is_nan() { String::new() } else { format!(" from {from:.1} to {to:.1} s") };
             format!(
-                "{}: {} doesn't change by a digit in {} rows{when}, while the photodiodes say that it moved: did it \
-                 hang?",
+                "{}: {} doesn't change by a digit in {} rows{when}, while the {} say that it moved: did it hang?",
                 one.name,
                 names.join(", "),
-                run.len()
+                run.len(),
+                called(data)
             )
         };
         held.into_iter().map(say).chain(all_at_once(data, one)).collect::<Vec<_>>()
@@ -64,9 +66,10 @@ fn all_at_once(data: &Dataset, one: &Recording) -> Option<String> {
     is_one.then(|| {
         let [from_s, to_s] = [longest.start, longest.end - 1].map(|row| data.time_s()[row]);
         format!(
-            "{}: all photodiodes keep their values in {} rows, from {from_s:.1} to {to_s:.1} s, while {} moves: did \
-             what logs them hang?",
+            "{}: all {} keep their values in {} rows, from {from_s:.1} to {to_s:.1} s, while {} moves: did what logs \
+             them hang?",
             one.name,
+            called(data),
             longest.len(),
             moved.join(", ")
         )

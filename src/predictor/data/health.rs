@@ -1,11 +1,12 @@
-//! Photodiodes that show nothing, columns that are cut off at the end of the recorded range, photodiodes whose clock is
-//! another than that of what was measured beside them; files that contradict each other.
+//! Photodiodes and cells that show nothing, columns that are cut off at the end of the recorded range, photodiodes whose
+//! clock is another than that of what was measured beside them; files that contradict each other.
 
 use std::ops::Range;
 
 use lunula_predictor::{Dataset, Delay, Difference, Mismatch, Recording, delays, mismatches};
 use ndarray::{Axis, Slice};
 
+use super::blocks::TURNED;
 use super::columns::cell;
 use super::source::Source;
 use crate::log::doubts::cut_off;
@@ -43,10 +44,29 @@ pub(super) fn warnings(source: &Source, targets: &[String], keep_faults: bool) -
             ));
         }
     }
+    warnings.extend(unchanging(source).map(|said| format!("{file}: {said}")));
     warnings.extend(copies(source).map(|said| format!("{file}: {said}")));
     let targets = targets.iter().zip(&source.y).flat_map(|(name, values)| cut_off(name, &seen(values)));
     warnings.extend(targets.map(|said| format!("{file}: {said}")));
     warnings
+}
+
+/// Of fewer rows a cell may keep its value by chance (assumed).
+const FEW: usize = 10;
+
+/// Cells of a file that have a single value. Noise changes the last digit of every other.
+fn unchanging(source: &Source) -> Option<String> {
+    let is_one = |values: &[f64]| {
+        let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+        known.len() >= FEW && known.iter().all(|&value| value == known[0])
+    };
+    let cells = source.inputs.iter().zip(&source.x).filter(|(name, _)| cell(name).is_some());
+    let still: Vec<&str> = cells.filter(|(_, values)| is_one(values)).map(|(name, _)| name.as_str()).collect();
+    let more = match still.len().checked_sub(1)? {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Some(format!("{}{more}: the same to the last digit in all rows; overexposed, or no part of the picture?", still[0]))
 }
 
 /// Photodiodes of a file that are another's in every row, and not all one value.
@@ -67,6 +87,12 @@ fn copies(source: &Source) -> impl Iterator<Item = String> {
     (0..count).filter_map(of)
 }
 
+/// What the inputs are called, of which some are blocks of cells.
+pub(super) fn called(data: &Dataset) -> &'static str {
+    let is_cell = |name: &String| name.split(' ').next().and_then(cell).is_some();
+    if data.inputs().first().is_some_and(is_cell) { "cells" } else { "photodiodes" }
+}
+
 /// Photodiodes of one sensor are alike from recording to recording; so many times another's are in another unit
 /// (assumed: amplifiers differ by less, units by 1000).
 const OTHER_UNIT: f64 = 30.0;
@@ -79,16 +105,14 @@ pub(in crate::predictor) fn units<'a>(sets: impl IntoIterator<Item = &'a Dataset
             let sizes = x.columns().into_iter().filter_map(|column| median_of(column.iter().map(|v| v.abs())));
             sizes.max_by(f64::total_cmp)
         };
-        set.recordings().iter().filter_map(move |one| Some((size(one)?, one.name.as_str())))
+        set.recordings().iter().filter_map(move |one| Some((size(one)?, (one.name.as_str(), called(set)))))
     };
-    let mut sizes: Vec<(f64, &str)> = sets.into_iter().flat_map(of_set).filter(|(size, _)| *size > 0.0).collect();
+    let mut sizes: Vec<(f64, (&str, &str))> =
+        sets.into_iter().flat_map(of_set).filter(|(size, _)| *size > 0.0).collect();
     sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [(least, small), .., (most, large)] = sizes[..] else { return None };
+    let [(least, (small, _)), .., (most, (large, called))] = sizes[..] else { return None };
     (most >= OTHER_UNIT * least).then(|| {
-        format!(
-            "the photodiodes of {large} are {:.0} times as large as those of {small}: in another unit?",
-            most / least
-        )
+        format!("the {called} of {large} are {:.0} times as large as those of {small}: in another unit?", most / least)
     })
 }
 
@@ -115,9 +139,10 @@ pub(super) fn clocks(data: &Dataset) -> Option<String> {
     };
     let more = if off.len() > 1 { format!(" ({} more recording(s) alike)", off.len() - 1) } else { String::new() };
     Some(format!(
-        "{}: the photodiodes answer {:.1} s {side} {}, {finger}: were they logged on two clocks? Shifted so, {:.1} % \
+        "{}: the {} answer {:.1} s {side} {}, {finger}: were they logged on two clocks? Shifted so, {:.1} % \
          of the variance is left unexplained instead of {:.1} %{more}",
         recording.name,
+        called(data),
         delay.by_s.abs(),
         data.targets().join(", "),
         100.0 * delay.without,
@@ -125,12 +150,13 @@ pub(super) fn clocks(data: &Dataset) -> Option<String> {
     ))
 }
 
-/// What to say of files, as ranges of rows, that contradict the others.
-pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Vec<String> {
-    let all = mismatches(data, parts);
+/// What to say of files, as ranges of rows, that contradict the others; `orders` are those of [`TURNED`], of cells.
+pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>], names: &[&str]) -> Vec<String> {
+    let all = mismatches(data, parts, orders);
     let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
     let looks = |difference| match difference {
         Difference::Exchanged([a, b]) => format!("{} and {} look exchanged", columns[a], columns[b]),
+        Difference::Ordered(order) => format!("the picture looks {}", TURNED[order]),
         Difference::Scaled { column, by } => match by {
             -2.0..-0.5 => format!("{} looks to have the other sign", columns[column]),
             _ => {

@@ -13,6 +13,7 @@
 //! without ambient light is left out and counted, unless faults are kept. A row that is left out for several reasons is
 //! counted once: as a fault, else as invalid, else as empty. In a raw log `nan` and `NA` mean missing, as in align.
 
+mod blocks;
 mod columns;
 mod file;
 mod frozen;
@@ -24,6 +25,7 @@ mod tests;
 
 use clap::Args;
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use lunula_predictor::{Dataset, DatasetFault, Recording, recording_hashes};
@@ -33,6 +35,7 @@ use rayon::prelude::*;
 use crate::log::{LogError, LogReading};
 use crate::table::TableError;
 use crate::words::twins;
+use blocks::Blocks;
 use recordings::Splitter;
 use source::{Source, agree};
 
@@ -258,13 +261,17 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     let names = |of: fn(&Recording) -> &String| data.recordings().iter().map(move |one| of(one).as_str());
     warnings.extend(twins("subjects", names(|one| &one.subject)));
     warnings.extend(twins("sessions", names(|one| &one.session)));
-    warnings.extend(health::clocks(&data));
-    // Cells are no voltages.
-    if !wanted.cells {
-        warnings.extend(frozen::warnings(&data));
-        warnings.extend(health::units([&data]));
-        let names: Vec<&str> = data_read.iter().map(|file| file.name.as_str()).collect();
-        warnings.extend(health::mismatched(&data, &parts, &names));
+    let names: Vec<&str> = data_read.iter().map(|file| file.name.as_str()).collect();
+    let seen = |data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]| {
+        let alone = health::clocks(data).into_iter().chain(frozen::warnings(data)).chain(health::units([data]));
+        alone.chain(health::mismatched(data, parts, orders, &names)).collect::<Vec<_>>()
+    };
+    // Cells are many, and each says little.
+    if let Some(blocks) = Blocks::of(&data) {
+        let parts: Vec<Range<usize>> = parts.iter().map(|rows| blocks.part(rows)).collect();
+        warnings.extend(seen(&blocks.data, &parts, &blocks.orders));
+    } else if !wanted.cells {
+        warnings.extend(seen(&data, &parts, &[]));
     }
     Ok(Read { data, files, failed, warnings })
 }

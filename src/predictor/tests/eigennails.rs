@@ -9,6 +9,10 @@ impl Folder {
     /// Cells of a nail that follow the forces, the corner cell outside of it; every fifth row lacks the upper row of
     /// cells where `rod`. Forces are those of `forces`, colours those of `colours`: the seeds of their paths.
     fn cells(&self, name: &str, colours: u64, forces: u64, rod: bool) -> PathBuf {
+        self.rows_of_cells(ROWS, name, colours, forces, rod)
+    }
+
+    fn rows_of_cells(&self, rows: usize, name: &str, colours: u64, forces: u64, rod: bool) -> PathBuf {
         let cells = (0..SIDE * SIDE).map(|k| format!("C_{:02}_{:02}", k / SIDE, k % SIDE));
         let mut text = format!("time_s,{},P1,P2,Fx_N,Fy_N,Fz_N\n", cells.collect::<Vec<_>>().join(","));
         let path = |seed: u64, t: f64, k: u64| -> f64 {
@@ -18,13 +22,16 @@ impl Folder {
             };
             0.5 * (one(1.0) + one(2.0) + one(3.0))
         };
-        for row in 0..ROWS {
+        for row in 0..rows {
             let t = 0.1 * row as f64;
             let [x, y, z] = [0, 1, 2].map(|k| path(colours, t, k));
             let at = |k: usize| {
                 let (u, v) = ((k % SIDE) as f64 - 2.5, 2.5 - (k / SIDE) as f64);
                 let noise = ((row * 37 + k) as f64 * 78.233 + colours as f64).sin() * 43_758.545_3;
-                50.0 + 3.0 * x * u + 2.0 * y * v + 4.0 * z * (-0.2 * (u * u + v * v)).exp() + 0.2 * noise.fract()
+                50.0 + 3.0 * x * u
+                    + 2.0 * y * v
+                    + 4.0 * z * (-0.2 * ((u - 0.7).powi(2) + (v - 0.4).powi(2))).exp()
+                    + 0.2 * noise.fract()
             };
             write!(text, "{t}").unwrap();
             for k in 0..SIDE * SIDE {
@@ -40,6 +47,18 @@ impl Folder {
         let path = self.path(name);
         std::fs::write(&path, text).unwrap();
         path
+    }
+
+    /// What is said of a third file of cells beside two, its rows, of time, cells and forces, changed.
+    fn said_of(&self, change: impl Fn(&[Vec<String>]) -> Vec<Vec<String>>) -> Vec<String> {
+        let [a, b, c] = [("a.csv", 1), ("b.csv", 2), ("c.csv", 3)]
+            .map(|(name, seed)| self.rows_of_cells(3 * ROWS, name, seed, seed, false));
+        let text = std::fs::read_to_string(&c).unwrap();
+        let (head, rows) = text.split_once('\n').unwrap();
+        let rows: Vec<Vec<String>> = rows.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+        let changed: Vec<String> = change(&rows).iter().map(|row| row.join(",") + "\n").collect();
+        std::fs::write(&c, format!("{head}\n{}", changed.concat())).unwrap();
+        self.nails(&[&a, &b, &c], &[], OnScores::Ridge).unwrap().1.warnings
     }
 
     fn nails(
@@ -137,6 +156,59 @@ fn labels_of_another_recording_are_named_and_repeated_paths_too() {
     let b = folder.cells("b.csv", 2, 2, false);
     let (_, report) = folder.nails(&[&a, &b], &[&again], OnScores::Ridge).unwrap();
     assert!(report.warnings.iter().any(|warning| warning.contains("again.csv that of")), "{:?}", report.warnings);
+}
+
+#[test]
+fn files_of_cells_that_contradict_the_others_are_named() {
+    let folder = Folder::new();
+    let each = |change: &dyn Fn(&mut Vec<String>)| {
+        folder.said_of(|rows| {
+            let mut rows = rows.to_vec();
+            rows.iter_mut().for_each(change);
+            rows
+        })
+    };
+    assert_eq!(each(&|_| ()), [""; 0]);
+    let only = |said: Vec<String>, words: &str| {
+        let [one] = &said[..] else { panic!("{words}: {said:?}") };
+        assert!(one.contains(words), "{one}");
+    };
+    // Row `from` of the picture in the place of `to`.
+    let turned = |from: fn(usize, usize) -> [usize; 2]| {
+        each(&move |row| {
+            let cells = row[1..=SIDE * SIDE].to_vec();
+            for k in 0..SIDE * SIDE {
+                let [i, j] = from(k / SIDE, k % SIDE);
+                row[1 + k].clone_from(&cells[i * SIDE + j]);
+            }
+        })
+    };
+    only(
+        turned(|i, j| [i, SIDE - 1 - j]),
+        "c.csv contradicts the other files: in it the picture looks mirrored left to",
+    );
+    only(turned(|i, j| [SIDE - 1 - i, j]), "the picture looks mirrored from tip to base");
+    only(turned(|i, j| [SIDE - 1 - i, SIDE - 1 - j]), "the picture looks turned by 180 degrees");
+    let force = 3 + SIDE * SIDE;
+    only(each(&|row| row.swap(force, force + 2)), "Fx_N and Fz_N look exchanged");
+    let negate = |row: &mut Vec<String>| row[force + 1] = (-row[force + 1].parse::<f64>().unwrap()).to_string();
+    only(each(&negate), "Fy_N looks to have the other sign");
+    let larger = |row: &mut Vec<String>| {
+        let cells = row[1..=SIDE * SIDE].iter_mut().filter(|cell| !cell.is_empty());
+        cells.for_each(|cell| *cell = (255.0 * cell.parse::<f64>().unwrap()).to_string());
+    };
+    only(each(&larger), "the cells of c.csv are 255 times as large as those of");
+    only(each(&|row| row[20] = "7.5".to_owned()), "C_03_01: the same to the last digit in all rows");
+    let late = folder.said_of(|rows| {
+        let at = |k: usize| [&rows[k][..force], &rows[k - 30][force..]].concat();
+        (30..rows.len()).map(at).collect()
+    });
+    only(late, "c.csv: the cells answer 3.0 s before Fx_N, Fy_N, Fz_N, as in no finger");
+    let hangs = folder.said_of(|rows| {
+        let held = |k: usize| if (200..280).contains(&k) { 200 } else { k };
+        (0..rows.len()).map(|k| [&rows[k][..1], &rows[held(k)][1..force], &rows[k][force..]].concat()).collect()
+    });
+    only(hangs, "c.csv: all cells keep their values in 80 rows, from 20.0 to 27.9 s");
 }
 
 #[test]

@@ -41,6 +41,8 @@ const LEAST: f64 = 1e-10;
 pub enum Difference {
     /// Two columns stand in each other's place.
     Exchanged([usize; 2]),
+    /// All inputs stand in the one of the orders that are looked for which is counted so.
+    Ordered(usize),
     /// A column is so many times the others'.
     Scaled {
         /// Which.
@@ -65,8 +67,11 @@ pub struct Mismatch {
 
 /// The parts, as ranges of rows, that contradict the others. Of two that contradict each other both are named: the rows
 /// do not say which is right. Nothing is said of parts with few rows for the inputs, or hidden inputs.
+///
+/// Inputs may stand in each other's place, or be scaled, one or two of them; where there are `orders`, as of a picture's
+/// cells, only all of them at once: of each order, which input comes in each one's place. Done twice it changes nothing.
 #[must_use]
-pub fn mismatches(data: &Dataset, parts: &[Range<usize>]) -> Vec<Mismatch> {
+pub fn mismatches(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]) -> Vec<Mismatch> {
     let inputs = data.inputs().len();
     let has_rows = |rows: &Range<usize>| rows.len() >= ROWS * (1 + inputs);
     if inputs == 0 || inputs > INPUTS || parts.iter().filter(|rows| has_rows(rows)).count() < 2 {
@@ -77,7 +82,8 @@ pub fn mismatches(data: &Dataset, parts: &[Range<usize>]) -> Vec<Mismatch> {
         let mut others = Moments::none(data);
         let other = |&k: &usize| k != part && has_rows(&parts[k]);
         (0..parts.len()).filter(other).for_each(|k| others.add(&moments[k]));
-        let [there, back] = [(&others, &moments[part]), (&moments[part], &others)].map(|(of, on)| explained(of, on));
+        let both = [(&others, &moments[part]), (&moments[part], &others)];
+        let [there, back] = both.map(|(of, on)| explained(of, on, orders));
         let ((difference, recorded, mended), (again, recorded_back, mended_back)) = (there?, back?);
         let agree = match (difference, again) {
             (Difference::Scaled { column, by }, Difference::Scaled { column: same, by: back }) => {
@@ -225,10 +231,11 @@ impl Moments {
     }
 
     /// What they were if a difference were put right.
-    fn without(&self, difference: Difference) -> Self {
+    fn without(&self, difference: Difference, orders: &[Vec<usize>]) -> Self {
         let from = |k: usize| match difference {
             Difference::Exchanged([a, b]) if k == a => (b, 1.0),
             Difference::Exchanged([a, b]) if k == b => (a, 1.0),
+            Difference::Ordered(order) if k < self.inputs => (orders[order][k], 1.0),
             Difference::Scaled { column, by } if k == column => (k, 1.0 / by),
             _ => (k, 1.0),
         };
@@ -290,13 +297,16 @@ impl Moments {
 
 /// The difference that explains best what a model of the one says wrongly of the other, and what share of the variance
 /// is left unexplained without and with it; none where none does clearly, or none is needed.
-fn explained(of: &Moments, on: &Moments) -> Option<(Difference, f64, f64)> {
+fn explained(of: &Moments, on: &Moments, orders: &[Vec<usize>]) -> Option<(Difference, f64, f64)> {
     let model = of.model()?;
     let recorded = on.unexplained(&model);
-    let scaled = (0..on.columns).map(|column| Difference::Scaled { column, by: on.scale(&model, column) });
-    let exchanged = pairs(0..on.inputs).chain(pairs(on.targets())).map(Difference::Exchanged);
-    let put_right = |difference: Difference| (difference, on.without(difference).unexplained(&model));
-    let (difference, mended) = best(exchanged.chain(scaled).map(put_right).collect(), recorded)?;
+    let each = if orders.is_empty() { 0..on.inputs } else { 0..0 };
+    let scaled = each.clone().chain(on.targets());
+    let scaled = scaled.map(|column| Difference::Scaled { column, by: on.scale(&model, column) });
+    let exchanged = pairs(each).chain(pairs(on.targets())).map(Difference::Exchanged);
+    let ordered = (0..orders.len()).map(Difference::Ordered);
+    let put_right = |difference: Difference| (difference, on.without(difference, orders).unexplained(&model));
+    let (difference, mended) = best(exchanged.chain(scaled).chain(ordered).map(put_right).collect(), recorded)?;
     let is_other = !matches!(difference, Difference::Scaled { by, .. } if is_gain(by));
     is_other.then_some((difference, recorded, mended))
 }
@@ -343,7 +353,7 @@ mod tests {
 
     fn found(columns: [Array2<f64>; 2]) -> Vec<Mismatch> {
         let (data, parts) = dataset(columns);
-        mismatches(&data, &parts)
+        mismatches(&data, &parts, &[])
     }
 
     /// The rows of a part, with a difference made in its columns.
@@ -354,6 +364,7 @@ mod tests {
                 Difference::Exchanged([a, b]) => y.swap([row, a - 5], [row, b - 5]),
                 Difference::Scaled { column, by } if column < 5 => x[[row, column]] *= by,
                 Difference::Scaled { column, by } => y[[row, column - 5]] *= by,
+                Difference::Ordered(_) => x.row_mut(row).as_slice_mut().unwrap().reverse(),
             }
         }
         [x, y]
@@ -388,6 +399,23 @@ mod tests {
             other => panic!("{other:?}"),
         });
         assert!((by[0] / 0.5 - 1.0).abs() < 0.2 && (by[1] / 2.0 - 1.0).abs() < 0.2, "{by:?}");
+    }
+
+    #[test]
+    fn inputs_in_an_order_that_is_looked_for_are_found() {
+        let orders = [vec![1, 0, 2, 3, 4], vec![4, 3, 2, 1, 0]];
+        let said = |columns: [Array2<f64>; 2], orders: &[Vec<usize>]| {
+            let (data, parts) = dataset(columns);
+            mismatches(&data, &parts, orders).iter().map(|one| (one.part, one.difference)).collect::<Vec<_>>()
+        };
+        let made = Difference::Ordered(1);
+        assert_eq!(said(changed(touched(3), 1, made), &orders), [(1, made)]);
+        assert_eq!(said(changed(touched(3), 1, made), &[]), [], "two exchanged at once");
+        assert_eq!(said(touched(3), &orders), []);
+        // Targets are looked at as ever, single inputs are not.
+        let [target, input] = [[5, 7], [2, 4]].map(Difference::Exchanged);
+        assert_eq!(said(changed(touched(3), 1, target), &orders), [(1, target)]);
+        assert_eq!(said(changed(touched(3), 1, input), &orders), []);
     }
 
     #[test]
