@@ -23,10 +23,10 @@ use std::path::PathBuf;
 pub use lunula_predictor as models;
 use lunula_predictor::{Dataset, Predictor, TrainedOn, recording_hashes};
 
-pub(crate) use data::missing;
 pub use data::{
     DataError, DataFile, FailedFile, FileRows, Inputs, Read, RowOptions, Wanted, read_data, read_files, read_inputs,
 };
+pub(crate) use data::{cell, contradictions, missing};
 pub use error::PredictorError;
 pub use figures::{BarSeries, Bars, draw_bars};
 pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};

@@ -17,7 +17,7 @@ use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 
 use super::given::{Contrast, Given, LeftOutCandidates, Parts, PersonFigures, Target, WithoutSubject, pairs};
-use super::places::{MARGIN, Place, cell};
+use super::places::{MARGIN, Place, middle};
 use crate::input;
 use crate::layout::error::LayoutError;
 use crate::layout::options::LayoutOptions;
@@ -75,7 +75,7 @@ pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, Layo
     }
     let (n, margin) = (options.cells as usize, margin_of(folder)?);
     let readings = read_all(folder, &poses, listed.as_ref(), n, &mut strays)?;
-    let all = (0..n * n).map(|k| cell(format!("C_{:02}_{:02}", k / n, k % n), [k / n, k % n], n, margin));
+    let all = (0..n * n).map(|k| middle(format!("C_{:02}_{:02}", k / n, k % n), [k / n, k % n], n, margin));
     let all: Vec<Place> = all.collect();
     let mut left_out = LeftOutCandidates::default();
     let mut kept = Vec::new();

@@ -8,6 +8,7 @@ use crate::input;
 use crate::layout::error::LayoutError;
 use crate::layout::options::LayoutOptions;
 use crate::nail::Positions;
+use crate::predictor::cell;
 
 /// The side of a normalized picture, as a multiple of the nail's box, unless the pictures' report says otherwise.
 pub(super) const MARGIN: f64 = 1.25;
@@ -37,18 +38,8 @@ impl Place {
     }
 }
 
-/// Row and column of a cell: `C_03_12`.
-pub(super) fn cell_of(name: &str) -> Option<[usize; 2]> {
-    let (row, column) = name.strip_prefix("C_")?.split_once('_')?;
-    let number = |text: &str| {
-        let plain = (2..=4).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
-        text.parse().ok().filter(|_| plain)
-    };
-    Some([number(row)?, number(column)?])
-}
-
 /// The middle of a cell of a grid of `n` x `n` over a picture `margin` times the nail's box.
-pub(super) fn cell(name: String, [row, column]: [usize; 2], n: usize, margin: f64) -> Place {
+pub(super) fn middle(name: String, [row, column]: [usize; 2], n: usize, margin: f64) -> Place {
     // Both from the middle, so that mirror images are exactly that.
     let at = |k: usize| margin * (2.0 * k as f64 + 1.0 - n as f64) / n as f64;
     Place { name, u: at(column), v: -at(row) }
@@ -61,7 +52,7 @@ pub(in crate::layout) fn is_photodiode(name: &str) -> bool {
 
 /// The cells among columns, with their places; all of a grid, or of one whose size `options` say.
 pub(super) fn cells(path: &Path, names: &[String], options: &LayoutOptions) -> Result<Vec<Place>, LayoutError> {
-    let found: Vec<(&String, [usize; 2])> = names.iter().filter_map(|name| Some((name, cell_of(name)?))).collect();
+    let found: Vec<(&String, [usize; 2])> = names.iter().filter_map(|name| Some((name, cell(name)?))).collect();
     let reach = found.iter().flat_map(|(_, at)| at).max().map_or(0, |most| most + 1);
     let n = match options.grid {
         Some(n) if reach <= n as usize => n as usize,
@@ -79,7 +70,7 @@ pub(super) fn cells(path: &Path, names: &[String], options: &LayoutOptions) -> R
             return Err(LayoutError::input(path, what));
         }
     };
-    Ok(found.into_iter().map(|(name, at)| cell(name.clone(), at, n, MARGIN)).collect())
+    Ok(found.into_iter().map(|(name, at)| middle(name.clone(), at, n, MARGIN)).collect())
 }
 
 /// Places of photodiodes: of a file, or the thesis' eight.

@@ -9,17 +9,19 @@
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::ops::Range;
 
-use lunula_predictor::{Criterion, LayoutFault, LayoutProblem, Moments};
+use lunula_predictor::{Criterion, Dataset, LayoutFault, LayoutProblem, Moments, Recording};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
 use super::given::{Given, LeftOutCandidates, Parts, PersonFigures, Target};
-use super::places::{Place, cell_of, cells, is_photodiode, photodiodes};
+use super::places::{Place, cells, is_photodiode, photodiodes};
 use crate::input::copies;
 use crate::layout::error::LayoutError;
 use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
 use crate::log::doubts;
+use crate::predictor::{cell, contradictions};
 use crate::table::Table;
 
 /// A candidate that more of a person's rows lack is left out (assumed).
@@ -30,6 +32,7 @@ const TARGETS: [&str; 4] = ["Fx_N", "Fy_N", "Fz_N", "J2_deg"];
 /// The columns of a file, NaN where a cell is missing.
 struct Source {
     names: Vec<String>,
+    time_s: Vec<f64>,
     columns: BTreeMap<String, Vec<f64>>,
     /// The person of each row.
     subject: Vec<String>,
@@ -51,7 +54,7 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
     let sources: Vec<Source> =
         inputs.data.par_iter().map(|input| Source::read(input, options)).collect::<Result<_, _>>()?;
     let (first, path) = (&sources[0], &inputs.data[0].path);
-    let has_cells = inputs.positions.is_none() && first.names.iter().any(|name| cell_of(name).is_some());
+    let has_cells = inputs.positions.is_none() && first.names.iter().any(|name| cell(name).is_some());
     let mut notes: Vec<String> = sources.iter().flat_map(|source| source.notes.clone()).collect();
     let all = if has_cells {
         cells(path, &first.names, options)?
@@ -66,7 +69,7 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
         let what = "has no candidates: columns C_rr_cc (`lunula nailvideo --cells`) or photodiodes P1, P2, ..";
         return Err(LayoutError::input(path, what));
     }
-    let is_candidate = |name: &str| if has_cells { cell_of(name).is_some() } else { is_photodiode(name) };
+    let is_candidate = |name: &str| if has_cells { cell(name).is_some() } else { is_photodiode(name) };
     let own: Vec<&str> = all.iter().map(|place| place.name.as_str()).collect();
     agree(&sources, inputs, &own, is_candidate)?;
     let targets = targets(&sources, inputs, options)?;
@@ -79,7 +82,7 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
     LayoutProblem::fits(kept.len(), people.len())?;
     let places: Vec<Place> = kept.iter().map(|&k| all[k].clone()).collect();
     let files = inputs.data.iter().map(|input| (input.path.display().to_string(), input.path.as_path()));
-    let warnings = copies(files).into_iter().chain(twice);
+    let warnings = copies(files).into_iter().chain(twice).chain(contradicted(&sources, inputs, &own, &targets));
     let warnings = warnings.chain(sources.into_iter().flat_map(|source| source.warnings)).collect();
     let mut given = Given {
         criterion: Criterion::Error,
@@ -158,11 +161,14 @@ impl Source {
     fn of_table(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let table = Table::read(&input.path)?;
         let mut columns = BTreeMap::new();
+        let values = |name: &str| -> Result<Vec<f64>, LayoutError> {
+            Ok(table.numbers_or_nan(name)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+        };
+        let time_s = if table.has("time_s") { values("time_s")? } else { vec![f64::NAN; table.rows()] };
         for name in table.names() {
             let target = options.targets.as_ref().map_or(TARGETS.contains(&name.as_str()), |own| own.contains(name));
-            if target || cell_of(name).is_some() || is_photodiode(name) {
-                let numbers = table.numbers_or_nan(name)?;
-                columns.insert(name.clone(), numbers.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect());
+            if target || cell(name).is_some() || is_photodiode(name) {
+                columns.insert(name.clone(), values(name)?);
             }
         }
         let mut subject = vec![input.person(); table.rows()];
@@ -176,7 +182,7 @@ impl Source {
         let known = columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..]));
         let doubts = doubts::table(table.names(), known);
         let warnings = doubts.iter().map(|doubt| input.placed(doubt)).collect();
-        Ok(Self { names: table.names().to_vec(), columns, subject, notes: Vec::new(), warnings })
+        Ok(Self { names: table.names().to_vec(), time_s, columns, subject, notes: Vec::new(), warnings })
     }
 
     fn of_log(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
@@ -187,7 +193,7 @@ impl Source {
         let columns: Vec<_> = channels.map(|channel| (channel.name, channel.values)).collect();
         let names = columns.iter().map(|(name, _)| name.clone()).collect();
         let subject = vec![input.person(); lit.samples.time_s.len()];
-        Ok(Self { names, columns: columns.into_iter().collect(), subject, notes, warnings })
+        Ok(Self { names, time_s: lit.samples.time_s, columns: columns.into_iter().collect(), subject, notes, warnings })
     }
 }
 
@@ -239,18 +245,48 @@ fn targets(sources: &[Source], inputs: &LayoutInputs, options: &LayoutOptions) -
         return Ok(known);
     };
     for (k, name) in named.iter().enumerate() {
-        if named[..k].contains(name) || cell_of(name).is_some() || is_photodiode(name) {
+        if named[..k].contains(name) || cell(name).is_some() || is_photodiode(name) {
             let what = format!("--targets: {name} is there twice, or is a reading; name each target once");
             return Err(LayoutError::Request(what));
         }
         if let Some(at) = sources.iter().position(|source| !source.columns.contains_key(name)) {
-            let names = sources[at].names.iter().filter(|name| cell_of(name).is_none() && !is_photodiode(name));
+            let names = sources[at].names.iter().filter(|name| cell(name).is_none() && !is_photodiode(name));
             let others = names.cloned().collect::<Vec<_>>().join(", ");
             let what = format!("has no column {name}; its columns besides readings are {others}");
             return Err(LayoutError::input(&inputs.data[at].path, what));
         }
     }
     Ok(named.clone())
+}
+
+/// What the files say against each other. Rows without a target, or without a photodiode, are not looked at.
+fn contradicted(sources: &[Source], inputs: &LayoutInputs, own: &[&str], targets: &[String]) -> Vec<String> {
+    let (mut time_s, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut recordings, mut parts): (Vec<Recording>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+    let is_row = |x: &[f64], y: &[f64]| y.iter().all(|v| v.is_finite()) && x.iter().all(|v| v.is_finite());
+    for (source, input) in sources.iter().zip(&inputs.data) {
+        let of = |names: &mut dyn Iterator<Item = &str>| names.map(|name| &source.columns[name]).collect::<Vec<_>>();
+        let [readings, measured] = [of(&mut own.iter().copied()), of(&mut targets.iter().map(String::as_str))];
+        let start = time_s.len();
+        for (row, at_s) in source.time_s.iter().enumerate() {
+            let [own_x, own_y] = [&readings, &measured].map(|all| all.iter().map(|v| v[row]).collect::<Vec<f64>>());
+            if is_row(if own.iter().all(|name| cell(name).is_some()) { &[] } else { &own_x }, &own_y) {
+                time_s.push(*at_s);
+                x.extend(own_x);
+                y.extend(own_y);
+            }
+        }
+        let rows = start..time_s.len();
+        let [name, session, subject] = [&input.name, &input.name, &input.person()].map(String::clone);
+        recordings.push(Recording { name, session, subject, rows: rows.clone() });
+        parts.push(rows);
+    }
+    let shaped = |values: Vec<f64>, columns: usize| Array2::from_shape_vec((time_s.len(), columns), values).ok();
+    let (Some(x), Some(y)) = (shaped(x, own.len()), shaped(y, targets.len())) else { return Vec::new() };
+    let names = own.iter().map(|&name| name.to_owned()).collect();
+    let data = Dataset::with_hidden(names, targets.to_vec(), time_s, x, y, recordings);
+    let called: Vec<&str> = inputs.data.iter().map(|input| input.name.as_str()).collect();
+    data.map(|data| contradictions(&data, &parts, &called)).unwrap_or_default()
 }
 
 /// The rows of each person, by name.

@@ -32,7 +32,7 @@ impl Job for LayoutOptions {
         ],
         &[Part::new("layout", POSITIONS), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
     )
-    .revision(7);
+    .revision(8);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let data: Vec<&Foreseen> = inputs.iter().filter(|input| input.role == "data").collect();

@@ -262,18 +262,25 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     warnings.extend(twins("subjects", names(|one| &one.subject)));
     warnings.extend(twins("sessions", names(|one| &one.session)));
     let names: Vec<&str> = data_read.iter().map(|file| file.name.as_str()).collect();
-    let seen = |data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]| {
-        let alone = health::clocks(data).into_iter().chain(frozen::warnings(data)).chain(health::units([data]));
-        alone.chain(health::mismatched(data, parts, orders, &names)).collect::<Vec<_>>()
-    };
-    // Cells are many, and each says little.
-    if let Some(blocks) = Blocks::of(&data) {
-        let parts: Vec<Range<usize>> = parts.iter().map(|rows| blocks.part(rows)).collect();
-        warnings.extend(seen(&blocks.data, &parts, &blocks.orders));
-    } else if !wanted.cells {
-        warnings.extend(seen(&data, &parts, &[]));
-    }
+    warnings.extend(contradictions(&data, &parts, &names));
     Ok(Read { data, files, failed, warnings })
+}
+
+/// What files, whose rows are `parts`, say against each other, and columns against those beside them: other clocks, units,
+/// signs or orders, and what hangs. Cells, of which each says little, are looked at in blocks.
+pub(crate) fn contradictions(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Vec<String> {
+    let said = |data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]| {
+        let alone = health::clocks(data).into_iter().chain(frozen::warnings(data)).chain(health::units([data]));
+        alone.chain(health::mismatched(data, parts, orders, names)).collect()
+    };
+    if data.inputs().iter().any(|name| cell(name).is_none()) {
+        return said(data, parts, &[]);
+    }
+    let of_blocks = |blocks: Blocks| {
+        let parts: Vec<Range<usize>> = parts.iter().map(|rows| blocks.part(rows)).collect();
+        said(&blocks.data, &parts, &blocks.orders)
+    };
+    Blocks::of(data).map(of_blocks).unwrap_or_default()
 }
 
 /// Reads the voltages of `inputs` from a table or raw log, read as `log` says; targets need not be there. With

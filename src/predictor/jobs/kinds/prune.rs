@@ -18,7 +18,7 @@ impl Job for PruneChoices {
         ],
         &[Part::new("subsets", "subsets.csv"), Part::if_wanted(PICTURES, "")],
     )
-    .revision(8);
+    .revision(9);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         only_joints(joints(&self.target), own)
