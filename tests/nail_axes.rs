@@ -206,8 +206,8 @@ fn the_axes_of_phantoms_are_found() {
     }
 }
 
-/// Nails with a reason when the hand is annotated so.
-fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f64; 2]>, Axis)) -> usize {
+/// Nails with a reason, and those that slant, when the hand is annotated so.
+fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f64; 2]>, Axis)) -> [usize; 2] {
     let picture = folder.join("hand.png");
     hand.photo.save(&picture).unwrap();
     let mut shapes = Vec::new();
@@ -228,7 +228,8 @@ fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f
     let photo = Photo { pose: name(), subject: name(), file: name(), path: picture.clone(), outline: None, tone: None };
     let options = OutlineOptions::default();
     let nails = options.nails(&options.locate(&photo), &Photograph::read(&picture).unwrap()).unwrap().nails;
-    nails.iter().filter(|nail| !nail.reason.is_empty()).count()
+    let slants = nails.iter().filter(|nail| nail.slants_deg.is_some()).count();
+    [nails.iter().filter(|nail| !nail.reason.is_empty()).count(), slants]
 }
 
 mod real_data {
@@ -325,11 +326,17 @@ mod real_data {
         let hands = real_hands();
         let folder = tempfile::tempdir().unwrap();
         type Drawn<'a> = &'a dyn Fn(&Hand, &Outline, Axis) -> (Vec<[f64; 2]>, Axis);
-        let count = |drawn: Drawn<'_>| -> (usize, usize) {
-            let each = hands.iter().map(|hand| doubted(hand, folder.path(), |nail, axis| drawn(hand, nail, axis)));
-            let each: Vec<usize> = each.collect();
-            (each.iter().sum(), each.iter().filter(|doubted| **doubted > 0).count())
+        let each = |drawn: Drawn<'_>| -> Vec<[usize; 2]> {
+            hands.iter().map(|hand| doubted(hand, folder.path(), |nail, axis| drawn(hand, nail, axis))).collect()
         };
+        let count = |drawn: Drawn<'_>| {
+            let each: Vec<usize> = each(drawn).into_iter().map(|[doubted, _]| doubted).collect();
+            (each.iter().sum::<usize>(), each.iter().filter(|doubted| **doubted > 0).count())
+        };
+        let slant = [0.0, 15.0, -15.0, 25.0, -25.0, 40.0].map(|by_deg: f64| {
+            let by = |axis: Axis| Axis::from_clockwise_rad(axis.clockwise_rad() + by_deg.to_radians());
+            each(&|_, nail, axis| (nail.points(), by(axis))).into_iter().map(|[_, slants]| slants).sum::<usize>()
+        });
         let last = |hand: &Hand| [f64::from(hand.photo.width()) - 1.0, f64::from(hand.photo.height()) - 1.0];
         let (right, _) = count(&|_, nail, axis| (nail.points(), axis));
         let reverse = |axis: Axis| Axis::from_clockwise_rad(axis.clockwise_rad() + std::f64::consts::PI);
@@ -345,8 +352,9 @@ mod real_data {
         });
         eprintln!(
             "doubted of 127 nails (on 26 photographs): right {right}, reversed {reversed}, turned {turned:?}, mirrored \
-             {mirrored:?}"
+             {mirrored:?}; warned of as slanting, drawn off by 0, 15, -15, 25, -25 and 40 degrees: {slant:?}"
         );
+        assert!(slant[0] <= 2 && slant[3..].iter().all(|&count| count >= 60), "{slant:?}");
         // Measured: 0; 100; and of turned and mirrored photographs all, save one nail whose place is off the picture.
         assert_eq!(right, 0);
         assert!(reversed >= 95, "{reversed}");

@@ -509,3 +509,64 @@ fn an_interrupted_run_leaves_what_stood() {
     assert!(stderr.contains("interrupted; nothing was written"), "{stderr}");
     assert_eq!(dir.bytes_of("out").keys().collect::<Vec<_>>(), ["nails.csv"]);
 }
+
+#[test]
+fn pictures_of_other_channels_values_or_axes_than_the_others_are_named() {
+    let dir = Dir::new();
+    let scene = "phantom photos --subjects 5 --light chamber --poses nominal --no-normalized --seed 3 --out s -q";
+    dir.words(scene).expect(0);
+    let file = |k: usize, ending: &str| dir.path(&format!("s/photos/nominal/s0{k}.{ending}"));
+    let good: Vec<image::RgbImage> =
+        (1..=5).map(|k| image::open(file(k, "png")).expect("a picture").to_rgb8()).collect();
+    let said = |change: &dyn Fn(usize, &mut [u8; 3])| {
+        for (k, picture) in (1..).zip(&good) {
+            let mut picture = picture.clone();
+            picture.pixels_mut().for_each(|pixel| change(k, &mut pixel.0));
+            picture.save(file(k, "png")).expect("a picture");
+        }
+        let answer = dir.words("photos s/photos --out out").expect(0).stderr;
+        answer.lines().filter(|line| line.starts_with("warning: ")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let only = |said: Vec<String>, words: &str| {
+        assert!(said.len() == 1 && said[0].contains(words), "{words}: {said:?}");
+    };
+    assert_eq!(said(&|_, _| ()), [""; 0]);
+    let red_green = said(&|k, colour| {
+        if k == 2 {
+            colour.swap(0, 1)
+        }
+    });
+    only(red_green, "nail and skin are greener than red in nominal/s02.png: were red and green exchanged? Maps are of");
+    only(
+        said(&|k, colour| {
+            if k == 4 {
+                *colour = colour.map(|value| 255 - value)
+            }
+        }),
+        "nail and skin are bluer than green, and greener than red in nominal/s04.png: is it a negative? Maps are",
+    );
+    let linear = |value: u8| (255.0 * (f64::from(value) / 255.0).powf(2.2)).round() as u8;
+    only(
+        said(&|k, colour| {
+            if k % 2 == 0 {
+                *colour = colour.map(linear)
+            }
+        }),
+        "the photographs of s02, s04 are darker and more coloured than the others': have they linear values",
+    );
+    assert_eq!(said(&|_, colour| *colour = colour.map(linear)), [""; 0], "all alike");
+    // An axis that was drawn aslant by 30 degrees, counterclockwise.
+    let mut drawn: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(file(3, "json")).expect("an annotation")).expect("JSON");
+    let shapes = drawn["shapes"].as_array_mut().expect("shapes");
+    let axis = shapes.iter_mut().find(|shape| shape["label"] == "axis").expect("an axis");
+    let end = |k: usize| [0, 1].map(|place| axis["points"][k][place].as_f64().expect("a number"));
+    let [[from_x, from_y], [x, y]] = [end(0), end(1)];
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let (dx, dy) = (x - from_x, y - from_y);
+    axis["points"][1] = serde_json::json!([from_x + cos * dx + sin * dy, from_y - sin * dx + cos * dy]);
+    std::fs::write(file(3, "json"), drawn.to_string()).expect("an annotation");
+    let slants = said(&|_, _| ());
+    only(slants.clone(), "the drawn axis is not the finger's direction in nominal/s03.png (by the picture it is ");
+    assert!(slants[0].contains("degrees further clockwise"), "{slants:?}");
+}

@@ -12,7 +12,7 @@ use super::sample::{Colours, Planes};
 use crate::labelme::LabelMe;
 use crate::nail::Outline;
 use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file};
-use crate::photo::{NailFrame, Photograph, is_bluer};
+use crate::photo::{Hues, Mistaken, NailFrame, Photograph};
 use crate::photograph::{PICTURES, is_picture};
 use crate::video::{Frame, Info};
 
@@ -30,8 +30,8 @@ pub(in crate::nailvideo) struct FirstNail {
     pub(in crate::nailvideo) frame: NailFrame,
     pub(in crate::nailvideo) source: Source,
     pub(in crate::nailvideo) confidence: Option<f64>,
-    /// Whether it and the skin below it are bluer than red.
-    pub(in crate::nailvideo) is_bluer: bool,
+    /// What its channels, and those of the skin below it, seem to be.
+    pub(in crate::nailvideo) mistaken: Option<Mistaken>,
 }
 
 impl FirstNail {
@@ -141,7 +141,7 @@ impl Finder {
         };
         let seen = to_draw(&listed.nails);
         let found = one_of(listed.nails, [picture.image.width(), picture.image.height()]);
-        let found = found.map(|nail| FirstNail { is_bluer: is_bluer(&picture.image, &nail.frame), ..nail });
+        let found = found.map(|nail| FirstNail { mistaken: Hues::of(&picture.image, &nail.frame).mistaken, ..nail });
         found.map_err(|why| NotOne { why, seen })
     }
 }
@@ -171,7 +171,7 @@ fn one_of(nails: Vec<Nail>, size: [u32; 2]) -> Result<FirstNail, String> {
     if let Some(doubt) = frame.doubt(&outline, size) {
         return Err(format!("of the nail: {doubt}"));
     }
-    Ok(FirstNail { outline, frame, source, confidence, is_bluer: false })
+    Ok(FirstNail { outline, frame, source, confidence, mistaken: None })
 }
 
 fn narrow(nail: &str, width_px: f64) -> String {

@@ -124,7 +124,7 @@ fn nail_of(annotated: &crate::photo::outline::Annotated) -> Nail {
         Ok(outline) => (Some(outline.clone()), String::new()),
         Err(fault) => (None, fault.to_string()),
     };
-    Nail { source: Source::Annotated, outline, axis: annotated.axis, confidence: Some(1.0), reason }
+    Nail { source: Source::Annotated, outline, axis: annotated.axis, confidence: Some(1.0), slants_deg: None, reason }
 }
 
 /// What is drawn, or, where that is no outline, a template over it.

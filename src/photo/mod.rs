@@ -8,6 +8,7 @@
 
 mod channels;
 mod error;
+mod hues;
 mod normalize;
 mod options;
 pub mod outline;
@@ -17,7 +18,7 @@ mod run;
 mod set;
 mod sums;
 
-pub(crate) use crate::photo::run::doubts::is_bluer;
+pub(crate) use crate::photo::hues::{Hues, Mistaken};
 pub use crate::photo::run::job::run;
 pub use crate::photo::run::kind::MapsJob;
 pub use crate::photo::run::plan::plan;

@@ -173,6 +173,14 @@ impl Table {
         self.numbers_where(name, |number| !number.is_infinite())
     }
 
+    /// The same, NaN where a cell is empty as well.
+    ///
+    /// # Errors
+    /// No such column, or a cell that is no number or infinite.
+    pub fn values(&self, name: &str) -> Result<Vec<f64>, TableError> {
+        Ok(self.numbers_or_nan(name)?.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+    }
+
     fn numbers_where(&self, name: &str, allowed: fn(f64) -> bool) -> Result<Vec<Option<f64>>, TableError> {
         const WHAT: &str = "is no finite number; correct it or leave it empty";
         let bad = |row: usize, shown: String| Err(self.cell(row, name, format!("`{shown}` {WHAT}")));

@@ -43,14 +43,11 @@ pub(crate) fn evaluation_numbers(folder: &Path) -> Result<Numbers, TableError> {
             .iter()
             .filter(|name| table.names().iter().any(|other| *other == format!("{name}_predicted")))
             .collect();
-        let column = |name: &str| -> Result<Vec<f64>, TableError> {
-            Ok(table.numbers_or_nan(name)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
-        };
-        let measured = targets.iter().map(|name| column(name)).collect::<Result<Vec<_>, _>>()?;
+        let measured = targets.iter().map(|name| table.values(name)).collect::<Result<Vec<_>, _>>()?;
         let untouched: Vec<bool> =
             (0..table.rows()).map(|row| measured.iter().all(|values| values[row].abs() < REST_N)).collect();
         for (target, own) in targets.iter().zip(&measured) {
-            let found = column(&format!("{target}_predicted"))?;
+            let found = table.values(&format!("{target}_predicted"))?;
             let errors = |keep: &dyn Fn(usize) -> bool| {
                 let rows = (0..own.len()).filter(|&row| keep(row) && own[row].is_finite() && found[row].is_finite());
                 let squares: Vec<f64> = rows.map(|row| (own[row] - found[row]).powi(2)).collect();

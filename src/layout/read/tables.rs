@@ -161,14 +161,11 @@ impl Source {
     fn of_table(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let table = Table::read(&input.path)?;
         let mut columns = BTreeMap::new();
-        let values = |name: &str| -> Result<Vec<f64>, LayoutError> {
-            Ok(table.numbers_or_nan(name)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
-        };
-        let time_s = if table.has("time_s") { values("time_s")? } else { vec![f64::NAN; table.rows()] };
+        let time_s = if table.has("time_s") { table.values("time_s")? } else { vec![f64::NAN; table.rows()] };
         for name in table.names() {
             let target = options.targets.as_ref().map_or(TARGETS.contains(&name.as_str()), |own| own.contains(name));
             if target || cell(name).is_some() || is_photodiode(name) {
-                columns.insert(name.clone(), values(name)?);
+                columns.insert(name.clone(), table.values(name)?);
             }
         }
         let mut subject = vec![input.person(); table.rows()];
@@ -263,14 +260,15 @@ fn targets(sources: &[Source], inputs: &LayoutInputs, options: &LayoutOptions) -
 fn contradicted(sources: &[Source], inputs: &LayoutInputs, own: &[&str], targets: &[String]) -> Vec<String> {
     let (mut time_s, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());
     let (mut recordings, mut parts): (Vec<Recording>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
-    let is_row = |x: &[f64], y: &[f64]| y.iter().all(|v| v.is_finite()) && x.iter().all(|v| v.is_finite());
+    let are_cells = own.iter().all(|name| cell(name).is_some());
+    let is_known = |values: &[f64]| values.iter().all(|value| value.is_finite());
     for (source, input) in sources.iter().zip(&inputs.data) {
         let of = |names: &mut dyn Iterator<Item = &str>| names.map(|name| &source.columns[name]).collect::<Vec<_>>();
         let [readings, measured] = [of(&mut own.iter().copied()), of(&mut targets.iter().map(String::as_str))];
         let start = time_s.len();
         for (row, at_s) in source.time_s.iter().enumerate() {
             let [own_x, own_y] = [&readings, &measured].map(|all| all.iter().map(|v| v[row]).collect::<Vec<f64>>());
-            if is_row(if own.iter().all(|name| cell(name).is_some()) { &[] } else { &own_x }, &own_y) {
+            if is_known(&own_y) && (are_cells || is_known(&own_x)) {
                 time_s.push(*at_s);
                 x.extend(own_x);
                 y.extend(own_y);

@@ -86,8 +86,8 @@ impl TableRows {
             let (mut numbers, mut texts) = (Vec::new(), Vec::new());
             if name == "sensor_status" || GROUPS.contains(&name.as_str()) {
                 table.each_text(name, |_, text| texts.push(text.to_owned()))?;
-            } else if let Ok(values) = table.numbers_or_nan(name) {
-                numbers = values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+            } else if let Ok(values) = table.values(name) {
+                numbers = values;
             }
             rows.numbers.push(numbers);
             rows.texts.push(texts);

@@ -110,9 +110,6 @@ fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
 
 fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
     let table = Table::read(path)?;
-    let numbers = |name: &str| -> Result<Vec<f64>, TableError> {
-        Ok(table.numbers_or_nan(name)?.into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect())
-    };
     let mut fingers: Vec<Finger> = Vec::new();
     let (mut angles_without_gate, mut notes) = (false, Vec::new());
     for column in table.names().iter().filter(|name| is_force(name)) {
@@ -133,13 +130,13 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
         };
         let angles = table.names().iter().filter(|name| is_angle(name, own));
         let angles = match gate {
-            Some(_) => angles.map(|name| Ok((name.clone(), numbers(name)?))).collect::<Result<_, TableError>>()?,
+            Some(_) => angles.map(|name| Ok((name.clone(), table.values(name)?))).collect::<Result<_, TableError>>()?,
             None => {
                 angles_without_gate |= angles.count() > 0;
                 Vec::new()
             }
         };
-        let fz_n = numbers(column)?;
+        let fz_n = table.values(column)?;
         fingers.push(Finger { name, fz_n, gate: gate.unwrap_or_default(), angles, own: None });
     }
     if table.has(FINGER) {
@@ -151,7 +148,7 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
     }
     let texts = |name: &str| table.has(name).then(|| table.texts(name)).transpose();
     Ok(Rows {
-        time_s: numbers(TIME)?,
+        time_s: table.values(TIME)?,
         trial: texts(TRIAL)?,
         subject: texts(SUBJECT)?,
         fingers,

@@ -60,8 +60,7 @@ pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogErr
 
 /// A column of numbers; NaN where it is missing.
 fn numbers_of(path: &Path, table: &Table, name: &str) -> Result<Vec<f64>, LogError> {
-    let numbers = table.numbers_or_nan(name).map_err(|why| failed(path, why))?;
-    Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+    table.values(name).map_err(|why| failed(path, why))
 }
 
 fn failed(path: &Path, why: TableError) -> LogError {

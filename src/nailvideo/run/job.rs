@@ -30,6 +30,7 @@ use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
 use crate::nailvideo::press::{Recording, USE, noise_sd, reversed, rows};
 use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells, discs};
+use crate::photo::Mistaken;
 use crate::photo::outline::{Source, ToDraw};
 use crate::photograph::Photograph;
 use crate::stages::{Stages, left_out};
@@ -472,12 +473,9 @@ impl Job<'_> {
                 self.info.codec
             )),
         }
-        if nail.is_bluer {
-            report.warnings.push(format!(
-                "nail and skin are bluer than red on frame {}: were red and blue exchanged, as by a program that saves \
-                 OpenCV's BGR? Light is taken off by red",
-                report.frames.first
-            ));
+        if let Some([looks, done]) = nail.mistaken.map(Mistaken::words) {
+            let first = report.frames.first;
+            report.warnings.push(format!("{looks} on frame {first}: {done} Light is taken off by red"));
         }
         report.warnings.extend(positions.in_one_quarter());
         for names in positions.at_one_place() {

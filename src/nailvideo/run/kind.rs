@@ -60,7 +60,7 @@ impl Job for NailVideoJob {
             Part::if_wanted(REPORT, "report.html"),
         ],
     )
-    .revision(19);
+    .revision(20);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = self.outputs(Path::new(""), demand);

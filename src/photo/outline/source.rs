@@ -93,6 +93,8 @@ pub struct Nail {
     pub axis: Option<Axis>,
     /// 1 for what a person drew; else how sure outline and axis are, 0 to 1.
     pub confidence: Option<f64>,
+    /// By how much the picture sees a drawn axis slant, degrees clockwise, where that is much.
+    pub slants_deg: Option<f64>,
     /// Why it is left out; empty for one that is used.
     pub reason: String,
 }
@@ -279,6 +281,7 @@ impl OutlineOptions {
             outline: Some(n.outline),
             axis: Some(n.axis),
             confidence: Some(n.confidence),
+            slants_deg: None,
             reason,
         };
         Ok(Listed { nails: used.chain(doubtful).map(nail).collect(), refused, image_path: None })
@@ -337,7 +340,10 @@ impl OutlineOptions {
             }
             let (said, fit) = verdict(image, outline, axis);
             drawn.push((k, fit));
-            sure &= said == Verdict::Agrees;
+            sure &= !matches!(said, Verdict::Contradicts(_) | Verdict::Silent);
+            if let Verdict::Slants(by_deg) = said {
+                nail.slants_deg = Some(by_deg);
+            }
             if let Verdict::Contradicts(found) = said {
                 nail.reason = format!(
                     "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from \
@@ -375,11 +381,11 @@ pub(crate) fn hundredths(confidence: f64) -> String {
 }
 
 fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Nail {
-    Nail { source, outline: Some(outline), axis, confidence: Some(1.0), reason: String::new() }
+    Nail { source, outline: Some(outline), axis, confidence: Some(1.0), slants_deg: None, reason: String::new() }
 }
 
 fn left_out(source: Source, outline: Option<Outline>, reason: String) -> Nail {
-    Nail { source, outline, axis: None, confidence: None, reason }
+    Nail { source, outline, axis: None, confidence: None, slants_deg: None, reason }
 }
 
 fn mask_of(folder: &Path, photo: &Photo) -> Option<PathBuf> {

@@ -10,6 +10,7 @@ use crate::figure::{Sheet, Tile, TilePicture};
 use crate::files::{Staging, WriteError};
 use crate::input;
 use crate::photo::error::MergeError;
+use crate::photo::hues::Hues;
 use crate::photo::normalize::{NailFrame, Survey};
 use crate::photo::outline::{Axis, Nail, Source};
 use crate::photo::pose::rank;
@@ -36,8 +37,10 @@ pub struct NailRow {
     pub at_full_scale: f64,
     /// Of its normalized picture, where there is one.
     pub(in crate::photo) survey: Option<Survey>,
-    /// Whether it and the skin below it are bluer than red.
-    pub(in crate::photo) is_bluer: bool,
+    /// Its colours, and the skin's below it.
+    pub(in crate::photo) hues: Hues,
+    /// By how much the picture sees the drawn axis slant, degrees clockwise, where that is much.
+    pub(in crate::photo) slants_deg: Option<f64>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
 }
@@ -55,7 +58,8 @@ impl NailRow {
             normalized: None,
             at_full_scale: 0.0,
             survey: None,
-            is_bluer: false,
+            hues: Hues::default(),
+            slants_deg: nail.slants_deg,
             reason: String::new(),
         }
     }

@@ -7,11 +7,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use image::{DynamicImage, GenericImageView as _, Rgba};
-
 use crate::input::same_to_the_byte;
 use crate::median::median_of;
-use crate::photo::normalize::{AT_FULL_SCALE, FULL_SCALE, NailFrame, Survey};
+use crate::photo::hues::Mistaken;
+use crate::photo::normalize::{AT_FULL_SCALE, FULL_SCALE, Survey};
 use crate::photo::outline::Source;
 use crate::photo::results::NailRow;
 use crate::photo::set::{Photo, PhotoSet};
@@ -30,39 +29,60 @@ const USUAL: usize = 3;
 /// Names that a warning gives.
 const NAMES: usize = 3;
 
-/// Skin or nail is redder than blue by more than this, of full scale, whatever tone and light (120 nails of 26 real
-/// hands: by 0.02 in one, 0.11 or more in all others).
-const BLUER: f64 = -0.02;
+/// Subjects look linear beyond the first ([`Hues`](crate::photo::hues::Hues)), where the median subject lies below the
+/// second.
+const BESIDE: [f64; 2] = [1.0, -2.0];
+/// The fewest subjects that have a median.
+const SUBJECTS: usize = 3;
 
-/// Whether both a nail and the skin below it are bluer than red, as none are.
-pub(crate) fn is_bluer(image: &DynamicImage, frame: &NailFrame) -> bool {
-    let at = |[across, along]: &[f64; 2]| {
-        let [x, y] = frame.photo_from_nail(*across, *along).map(|v| v.round());
-        let within = x >= 0.0 && y >= 0.0 && x < f64::from(image.width()) && y < f64::from(image.height());
-        let Rgba([red, _, blue, _]) = within.then(|| image.get_pixel(x as u32, y as u32))?;
-        Some((f64::from(red) - f64::from(blue)) / f64::from(u8::MAX))
+/// Photographs whose channels are exchanged.
+fn exchanged(nails: &[Used]) -> Vec<String> {
+    let say = |one: Mistaken| {
+        let such = nails.iter().filter(|nail| nail.row.hues.mistaken == Some(one));
+        let mut names: Vec<String> = such.map(|nail| nail.photo.file.clone()).collect();
+        names.dedup();
+        let [looks, done] = one.words();
+        let green = if one == Mistaken::RedBlue { "Green is right all the same" } else { "Maps are of its green" };
+        (!names.is_empty()).then(|| format!("{looks} in {}: {done} {green}", some(&names)))
     };
-    let steps = || (0..9).map(|k| f64::from(k) / 8.0 - 0.5);
-    let nail: Vec<[f64; 2]> = steps().flat_map(|u| steps().map(move |v| [0.7 * u, 0.7 * v])).collect();
-    let skin: Vec<[f64; 2]> = steps().flat_map(|u| [[0.8 * u, -0.62], [0.8 * u, -0.75]]).collect();
-    let mean = |points: &[[f64; 2]]| {
-        let known: Vec<f64> = points.iter().filter_map(at).collect();
-        (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
-    };
-    image.color().has_color() && [nail, skin].iter().all(|points| mean(points).is_some_and(|less| less < BLUER))
+    Mistaken::ALL.into_iter().filter_map(say).collect()
 }
 
-/// Photographs whose red and blue are exchanged.
-fn exchanged(nails: &[Used]) -> Option<String> {
-    let bluer = nails.iter().filter(|nail| nail.row.is_bluer);
-    let names: Vec<String> = bluer.map(|nail| nail.photo.file.clone()).collect();
-    (!names.is_empty()).then(|| {
+/// Subjects whose pictures look linear beside the others'.
+fn linear(nails: &[Used]) -> Option<String> {
+    let mut subjects: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for nail in nails {
+        subjects.entry(&nail.photo.subject).or_default().extend(nail.row.hues.linear);
+    }
+    let known = subjects.into_iter().filter_map(|(subject, all)| Some((subject, median_of(all)?)));
+    let known: Vec<(&str, f64)> = known.collect();
+    let [beyond, below] = BESIDE;
+    median_of(known.iter().map(|(_, linear)| *linear)).filter(|usual| *usual < below)?;
+    let such: Vec<String> =
+        known.iter().filter(|(_, linear)| *linear > beyond).map(|(subject, _)| (*subject).to_owned()).collect();
+    (known.len() >= SUBJECTS && !such.is_empty()).then(|| {
         format!(
-            "nail and skin are bluer than red in {}: were red and blue exchanged, as by a program that saves OpenCV's \
-             BGR? Green is right all the same",
-            some(&names)
+            "the photographs of {} are darker and more coloured than the others': have they linear values (raw), or \
+             another camera's curve, or very dim light? Means and standard deviations mix both; bring all to one curve",
+            some(&such)
         )
     })
+}
+
+/// Nails whose drawn axis the picture sees slant.
+fn slanting(nails: &[Used]) -> Option<String> {
+    let such: Vec<(&Used, f64)> = nails.iter().filter_map(|nail| Some((nail, nail.row.slants_deg?))).collect();
+    let (first, by_deg) = such.first()?;
+    let mut names: Vec<String> = such.iter().map(|(nail, _)| nail.photo.file.clone()).collect();
+    names.dedup();
+    Some(format!(
+        "the drawn axis is not the finger's direction in {} (by the picture it is {:.0} degrees {} in {}): correct the \
+         line, or, where it is right, say --distal as well",
+        some(&names),
+        by_deg.abs(),
+        if *by_deg > 0.0 { "further clockwise" } else { "further counterclockwise" },
+        first.photo.file
+    ))
 }
 
 /// What there is to say.
@@ -73,10 +93,11 @@ pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
         same_outlines(&nails),
         levels(&nails),
         cut_off(&nails),
-        exchanged(&nails),
+        linear(&nails),
+        slanting(&nails),
         folders(set),
     ];
-    doubts.into_iter().flatten().chain(misspelt(set)).collect()
+    doubts.into_iter().flatten().chain(exchanged(&nails)).chain(misspelt(set)).collect()
 }
 
 /// A nail that was used.

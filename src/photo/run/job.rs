@@ -14,12 +14,12 @@ use std::time::Instant;
 use image::GrayAlphaImage;
 use rayon::prelude::*;
 
-use super::doubts::is_bluer;
 use crate::files::{Places, Staging, WriteError};
 use crate::job::Watch;
 use crate::median::median_of;
 use crate::photo::channels::{self, Cells, Compared, Sample};
 use crate::photo::error::PhotosError;
+use crate::photo::hues::Hues;
 use crate::photo::normalize::{MOST_AT_FULL_SCALE, NailFrame, Normalized, Normalizer, detail, normalized_or_why};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
@@ -334,7 +334,7 @@ impl Work<'_> {
                     let margin = self.options.normalization.margin;
                     row.at_full_scale = normalized.at_full_scale(margin);
                     row.survey = Some(normalized.survey());
-                    row.is_bluer = row.frame.is_some_and(|frame| is_bluer(&picture.image, &frame));
+                    row.hues = row.frame.map(|frame| Hues::of(&picture.image, &frame)).unwrap_or_default();
                     row.reason = partly(&normalized, row.at_full_scale, margin);
                     let is_large = row.frame.is_some_and(|frame| frame.width_px.min(frame.length_px) >= LEAST_SHARP_PX);
                     if row.source == Source::Detected && is_large {

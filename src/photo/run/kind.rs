@@ -61,7 +61,7 @@ impl Job for PhotosOptions {
         ],
         &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::if_wanted(PICTURES, "normalized")],
     )
-    .revision(14);
+    .revision(15);
 
     fn checked(mut self) -> Result<Self, OptionFault> {
         if self.channels {

@@ -1,5 +1,5 @@
-//! Photodiodes and cells that show nothing, columns that are cut off at the end of the recorded range, photodiodes whose
-//! clock is another than that of what was measured beside them; files that contradict each other.
+//! Photodiodes and cells that show nothing, columns that are cut off at the end of the recorded range, photodiodes
+//! whose clock is another than that of what was measured beside them; files that contradict each other.
 
 use std::ops::Range;
 
@@ -158,7 +158,11 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
         Difference::Exchanged([a, b]) => format!("{} and {} look exchanged", columns[a], columns[b]),
         Difference::Ordered(order) => format!("the picture looks {}", TURNED[order]),
         Difference::Scaled { column, by } => match by {
-            -2.0..-0.5 => format!("{} looks to have the other sign", columns[column]),
+            -2.0..-0.5 => {
+                // Of a nail that is alike on both sides it is the same.
+                let mirrored = if orders.is_empty() { "" } else { " (or the picture is mirrored)" };
+                format!("{} looks to have the other sign{mirrored}", columns[column])
+            }
             _ => {
                 // To two digits.
                 let unit = 10f64.powi(1 - by.abs().log10().floor() as i32);

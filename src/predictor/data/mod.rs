@@ -266,14 +266,14 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     Ok(Read { data, files, failed, warnings })
 }
 
-/// What files, whose rows are `parts`, say against each other, and columns against those beside them: other clocks, units,
-/// signs or orders, and what hangs. Cells, of which each says little, are looked at in blocks.
+/// What files, whose rows are `parts`, say against each other, and columns against those beside them: other clocks,
+/// units, signs or orders, and what hangs. Cells, of which each says little, are looked at in blocks.
 pub(crate) fn contradictions(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Vec<String> {
     let said = |data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]| {
         let alone = health::clocks(data).into_iter().chain(frozen::warnings(data)).chain(health::units([data]));
         alone.chain(health::mismatched(data, parts, orders, names)).collect()
     };
-    if data.inputs().iter().any(|name| cell(name).is_none()) {
+    if data.inputs().iter().all(|name| cell(name).is_none()) {
         return said(data, parts, &[]);
     }
     let of_blocks = |blocks: Blocks| {

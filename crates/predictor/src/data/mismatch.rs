@@ -68,8 +68,9 @@ pub struct Mismatch {
 /// The parts, as ranges of rows, that contradict the others. Of two that contradict each other both are named: the rows
 /// do not say which is right. Nothing is said of parts with few rows for the inputs, or hidden inputs.
 ///
-/// Inputs may stand in each other's place, or be scaled, one or two of them; where there are `orders`, as of a picture's
-/// cells, only all of them at once: of each order, which input comes in each one's place. Done twice it changes nothing.
+/// Inputs may stand in each other's place, or be scaled, one or two of them; where there are `orders`, as of a
+/// picture's cells, only all of them at once: of each order, which input comes in each one's place. Done twice it
+/// changes nothing.
 #[must_use]
 pub fn mismatches(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]) -> Vec<Mismatch> {
     let inputs = data.inputs().len();
@@ -89,7 +90,7 @@ pub fn mismatches(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>])
             (Difference::Scaled { column, by }, Difference::Scaled { column: same, by: back }) => {
                 column == same && is_gain(by * back)
             }
-            (one, other) => one == other,
+            (one, other) => one == other || is_mirror_image(one, other),
         };
         let matters = (recorded - mended).max(recorded_back - mended_back) >= LESS;
         (agree && matters).then_some(Mismatch { part, difference, recorded, mended })
@@ -174,9 +175,18 @@ fn best(mut all: Vec<(Difference, f64)>, recorded: f64) -> Option<(Difference, f
     all.retain(|(_, share)| share.is_finite());
     all.sort_by(|a, b| a.1.total_cmp(&b.1));
     let &(difference, mended) = all.first()?;
-    let is_clear = all.get(1).is_none_or(|rival| rival.1 >= RIVAL * mended);
+    let rival = all[1..].iter().find(|rival| !is_mirror_image(difference, rival.0));
+    let is_clear = rival.is_none_or(|rival| rival.1 >= RIVAL * mended);
     let is_sure = mended <= UNEXPLAINED.min(TIMES * recorded);
     (is_clear && is_sure).then_some((difference, mended))
+}
+
+/// Whether one is a column of the other sign and the other one inputs in another order: where a picture is alike on
+/// both sides, they are the same.
+fn is_mirror_image(one: Difference, other: Difference) -> bool {
+    let sign = |of: Difference| matches!(of, Difference::Scaled { by, .. } if by < 0.0);
+    let order = |of: Difference| matches!(of, Difference::Ordered(_));
+    sign(one) && order(other) || order(one) && sign(other)
 }
 
 /// Whether a sensor that was put on again may differ so much.

@@ -26,12 +26,9 @@ struct OverTime {
 impl OverTime {
     fn read(path: &Path, wanted: impl Fn(&str) -> bool) -> anyhow::Result<Self> {
         let table = Table::read(path)?;
-        let column = |name: &str| -> anyhow::Result<Vec<f64>> {
-            Ok(table.numbers_or_nan(name)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
-        };
         let names: Vec<String> = table.names().iter().filter(|name| wanted(name)).cloned().collect();
-        let values = names.iter().map(|name| column(name)).collect::<Result<_, _>>()?;
-        let time_s = column("time_s")?;
+        let values = names.iter().map(|name| table.values(name)).collect::<Result<_, _>>()?;
+        let time_s = table.values("time_s")?;
         ensure!(time_s.is_sorted_by(|a, b| a < b), "{}: time_s has to grow from row to row", path.display());
         Ok(Self { time_s, names, values })
     }

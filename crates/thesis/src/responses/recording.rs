@@ -63,25 +63,29 @@ impl Recording {
 
     fn of_table(path: &Path, name: &str) -> Result<Self, ResponsesError> {
         let table = Table::read(path)?;
-        let column = |name: &str| -> Result<Vec<f64>, TableError> {
-            Ok(table.numbers_or_nan(name)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
-        };
-        if !table.names().iter().any(|name| name == "time_s") {
+        if !table.has("time_s") {
             let what = "has no column time_s; cycles are found by time".to_owned();
             return Err(ResponsesError::Columns { path: PathBuf::from(name), what });
         }
         let channels = |wanted: &dyn Fn(&str) -> bool| -> Result<Vec<Channel>, TableError> {
             let names = table.names().iter().filter(|name| wanted(name));
-            names.map(|name| Ok(Channel { name: name.clone(), values: column(name)? })).collect()
+            names.map(|name| Ok(Channel { name: name.clone(), values: table.values(name)? })).collect()
         };
         let mut outputs = channels(&|name| number_of(name).is_some())?;
         let moves = channels(&|name| MOVES.contains(&name))?;
         let mut faulty = vec![false; table.rows()];
-        if table.names().iter().any(|name| name == "sensor_status") {
+        if table.has("sensor_status") {
             table.each_text("sensor_status", |row, text| faulty[row] = !matches!(text, "" | "ok"))?;
         }
         let count = forget(&mut outputs, &faulty);
-        Ok(Self { name: name.to_owned(), time_s: column("time_s")?, outputs, moves, faulty: count, notes: Vec::new() })
+        Ok(Self {
+            name: name.to_owned(),
+            time_s: table.values("time_s")?,
+            outputs,
+            moves,
+            faulty: count,
+            notes: Vec::new(),
+        })
     }
 
     fn of_log(path: &Path, name: &str) -> Result<Self, ResponsesError> {

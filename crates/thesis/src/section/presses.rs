@@ -70,21 +70,17 @@ pub(crate) fn read_presses(files: &[PressFile<'_>]) -> anyhow::Result<Presses> {
 
 fn read(file: &PressFile<'_>) -> anyhow::Result<Pressing> {
     let table = Table::read(file.path).with_context(|| file.name.to_owned())?;
-    let has = |name: &str| table.names().iter().any(|own| own == name);
-    let (site, light) = match (has("VP1"), has("VP2")) {
+    let (site, light) = match (table.has("VP1"), table.has("VP2")) {
         (true, false) => (Pressed::Proximal, "VP1"),
         (false, true) => (Pressed::Distal, "VP2"),
         _ => bail!("{}: has to have the pressed place's photodiode alone: VP1 (proximal) or VP2 (distal)", file.name),
     };
-    if !has("Fz_N") {
+    if !table.has("Fz_N") {
         bail!("{}: has no column Fz_N, the force that presses (negative)", file.name);
     }
-    let column = |name: &str| -> anyhow::Result<Vec<f64>> {
-        let values = table.numbers_or_nan(name).with_context(|| file.name.to_owned())?;
-        Ok(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
-    };
+    let column = |name: &str| table.values(name).with_context(|| file.name.to_owned());
     let (force, volts) = (column("Fz_N")?, column(light)?);
-    let times_s = if has("time_s") { Some(column("time_s")?) } else { None };
+    let times_s = if table.has("time_s") { Some(column("time_s")?) } else { None };
     let known = |row: &usize| {
         force[*row].is_finite()
             && volts[*row].is_finite()
