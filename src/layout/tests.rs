@@ -106,6 +106,34 @@ fn the_two_cells_that_explain_the_forces_are_found_where_they_lie() {
 }
 
 #[test]
+fn a_file_that_contradicts_the_others_is_named_and_a_time_that_is_no_number_is_none() {
+    let folder = Folder::new();
+    let noisy = |row: usize, k: usize, value: f64| format!("{:.9}", value + 0.1 * wave(7 * row + 3, k + 40));
+    let [a, b, c] = [0, 1, 2].map(|person| cells(person, 400, noisy));
+    let changed = |text: &str, change: &dyn Fn(&mut Vec<String>)| {
+        let (head, rows) = text.split_once('\n').unwrap();
+        let row = |line: &str| {
+            let mut row: Vec<String> = line.split(',').map(str::to_owned).collect();
+            change(&mut row);
+            row.join(",") + "\n"
+        };
+        format!("{head}\n{}", rows.lines().map(row).collect::<String>())
+    };
+    let run = |c: &str| {
+        folder.write("a.csv", &a).write("b.csv", &b).write("c.csv", c);
+        folder.run(&["a.csv", "b.csv", "c.csv"], "k = '2'").unwrap()
+    };
+    let contradicted = |report: &LayoutReport| report.warnings.iter().any(|said| said.contains("contradicts"));
+    let as_it_is = run(&c);
+    assert!(!contradicted(&as_it_is), "{:?}", as_it_is.warnings);
+    let negated = run(&changed(&c, &|row| row[1] = (-row[1].parse::<f64>().unwrap()).to_string()));
+    let said = "c.csv contradicts the other files: in it Fx_N looks to have the other sign";
+    assert!(negated.warnings.iter().any(|warning| warning.starts_with(said)), "{:?}", negated.warnings);
+    let by_clock = run(&changed(&c, &|row| row[0] = "12:30:01".to_owned()));
+    assert_eq!(by_clock.chosen.candidates, as_it_is.chosen.candidates);
+}
+
+#[test]
 fn a_column_of_subjects_is_as_good_as_a_file_for_each_and_threads_change_nothing() {
     let (apart, together) = (Folder::new(), Folder::new());
     let mut all = String::new();

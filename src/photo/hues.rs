@@ -53,6 +53,9 @@ pub(crate) struct Hues {
 
 impl Hues {
     pub(crate) fn of(image: &DynamicImage, frame: &NailFrame) -> Self {
+        if !image.color().has_color() {
+            return Self::default();
+        }
         let at = |[across, along]: &[f64; 2]| {
             let [x, y] = frame.photo_from_nail(*across, *along).map(|v| v.round());
             let within = x >= 0.0 && y >= 0.0 && x < f64::from(image.width()) && y < f64::from(image.height());
@@ -67,9 +70,7 @@ impl Hues {
             let sum = |k: usize| known.iter().map(|colour| colour[k]).sum::<f64>();
             (!known.is_empty()).then(|| [0, 1, 2].map(|k| sum(k) / known.len() as f64))
         };
-        let (true, Some(nail), Some(skin)) = (image.color().has_color(), mean(&nail), mean(&skin)) else {
-            return Self::default();
-        };
+        let (Some(nail), Some(skin)) = (mean(&nail), mean(&skin)) else { return Self::default() };
         let less = |a: usize, b: usize| [nail, skin].map(|colour| colour[a] - colour[b]);
         let is_behind = |a: usize, b: usize| less(a, b).iter().all(|less| *less < BEHIND);
         let [red_green, green_blue] = [less(0, 1), less(1, 2)].map(|less| less[0] + less[1]);

@@ -161,7 +161,8 @@ impl Source {
     fn of_table(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let table = Table::read(&input.path)?;
         let mut columns = BTreeMap::new();
-        let time_s = if table.has("time_s") { table.values("time_s")? } else { vec![f64::NAN; table.rows()] };
+        // Only clocks are compared by it: places are found without.
+        let time_s = table.values("time_s").unwrap_or_else(|_| vec![f64::NAN; table.rows()]);
         for name in table.names() {
             let target = options.targets.as_ref().map_or(TARGETS.contains(&name.as_str()), |own| own.contains(name));
             if target || cell(name).is_some() || is_photodiode(name) {

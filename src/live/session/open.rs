@@ -86,8 +86,8 @@ impl TableRows {
             let (mut numbers, mut texts) = (Vec::new(), Vec::new());
             if name == "sensor_status" || GROUPS.contains(&name.as_str()) {
                 table.each_text(name, |_, text| texts.push(text.to_owned()))?;
-            } else if let Ok(values) = table.values(name) {
-                numbers = values;
+            } else {
+                numbers = table.values(name).unwrap_or_default();
             }
             rows.numbers.push(numbers);
             rows.texts.push(texts);

@@ -340,19 +340,21 @@ impl OutlineOptions {
             }
             let (said, fit) = verdict(image, outline, axis);
             drawn.push((k, fit));
-            sure &= !matches!(said, Verdict::Contradicts(_) | Verdict::Silent);
-            if let Verdict::Slants(by_deg) = said {
-                nail.slants_deg = Some(by_deg);
-            }
-            if let Verdict::Contradicts(found) = said {
-                nail.reason = format!(
-                    "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from \
-                     up); correct the line, or, where it is right, say --distal as well",
-                    axis.clockwise_deg(),
-                    found.axis.clockwise_deg(),
-                    found.confidence
-                );
-                nail.confidence = None;
+            match said {
+                Verdict::Agrees => {}
+                Verdict::Slants(by_deg) => nail.slants_deg = Some(by_deg),
+                Verdict::Silent => sure = false,
+                Verdict::Contradicts(found) => {
+                    sure = false;
+                    nail.reason = format!(
+                        "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise \
+                         from up); correct the line, or, where it is right, say --distal as well",
+                        axis.clockwise_deg(),
+                        found.axis.clockwise_deg(),
+                        found.confidence
+                    );
+                    nail.confidence = None;
+                }
             }
         }
         if sure {

@@ -38,12 +38,10 @@ const SUBJECTS: usize = 3;
 /// Photographs whose channels are exchanged.
 fn exchanged(nails: &[Used]) -> Vec<String> {
     let say = |one: Mistaken| {
-        let such = nails.iter().filter(|nail| nail.row.hues.mistaken == Some(one));
-        let mut names: Vec<String> = such.map(|nail| nail.photo.file.clone()).collect();
-        names.dedup();
+        let files = files(nails.iter().filter(|nail| nail.row.hues.mistaken == Some(one)))?;
         let [looks, done] = one.words();
         let green = if one == Mistaken::RedBlue { "Green is right all the same" } else { "Maps are of its green" };
-        (!names.is_empty()).then(|| format!("{looks} in {}: {done} {green}", some(&names)))
+        Some(format!("{looks} in {files}: {done} {green}"))
     };
     Mistaken::ALL.into_iter().filter_map(say).collect()
 }
@@ -71,16 +69,15 @@ fn linear(nails: &[Used]) -> Option<String> {
 
 /// Nails whose drawn axis the picture sees slant.
 fn slanting(nails: &[Used]) -> Option<String> {
-    let such: Vec<(&Used, f64)> = nails.iter().filter_map(|nail| Some((nail, nail.row.slants_deg?))).collect();
-    let (first, by_deg) = such.first()?;
-    let mut names: Vec<String> = such.iter().map(|(nail, _)| nail.photo.file.clone()).collect();
-    names.dedup();
+    let such = || nails.iter().filter(|nail| nail.row.slants_deg.is_some());
+    let files = files(such())?;
+    let first = such().next()?;
+    let by_deg = first.row.slants_deg?;
     Some(format!(
-        "the drawn axis is not the finger's direction in {} (by the picture it is {:.0} degrees {} in {}): correct the \
-         line, or, where it is right, say --distal as well",
-        some(&names),
+        "the drawn axis is not the finger's direction in {files} (by the picture it is {:.0} degrees {} in {}): \
+         correct the line, or, where it is right, say --distal as well",
         by_deg.abs(),
-        if *by_deg > 0.0 { "further clockwise" } else { "further counterclockwise" },
+        if by_deg > 0.0 { "further clockwise" } else { "further counterclockwise" },
         first.photo.file
     ))
 }
@@ -118,6 +115,13 @@ fn some(names: &[String]) -> String {
     let more = names.len().saturating_sub(NAMES);
     let first = names[..names.len() - more].join(", ");
     if more > 0 { format!("{first} and {more} more") } else { first }
+}
+
+/// The photographs of nails, each once, where there are some.
+fn files<'a, 'b: 'a>(nails: impl Iterator<Item = &'a Used<'b>>) -> Option<String> {
+    let mut names: Vec<String> = nails.map(|nail| nail.photo.file.clone()).collect();
+    names.dedup();
+    (!names.is_empty()).then(|| some(&names))
 }
 
 fn as_listed(photo: &Photo) -> String {
