@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use crate::util::Dir;
-use lunula::job::Watch;
+use lunula::job::{Outputs, Watch};
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
+use lunula::predictor::PredictorError;
 use lunula::predictor::models::{Kind, Recipe};
-use lunula::predictor::{FolderOutputs, PredictorError};
 use lunula_thesis::compare::{CompareOptions, CompareReport, Person, compare};
 
 /// Sums over the same rows in another order; measured 0.
@@ -58,7 +58,7 @@ fn mean(report: &CompareReport, figure: &str, group: &str, series: &str) -> f64 
 fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
     let dir = Dir::new();
     let one = person(&dir, 1);
-    let report = compare(&[one], &options(), Some(&FolderOutputs::all(dir.path("out"))), &Watch::nobody()).unwrap();
+    let report = compare(&[one], &options(), Some(&Outputs::all(dir.path("out"))), &Watch::nobody()).unwrap();
     let figures: Vec<&str> = report.comparisons.iter().map(|one| one.figure.as_str()).collect();
     assert_eq!(figures, ["105", "106", "108", "109", "110", "111", "112", "113"]);
     for model in ["linear", "quadratic"] {

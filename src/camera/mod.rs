@@ -26,7 +26,7 @@ mod views;
 pub use crate::vision::VisionError;
 pub use board::{BoardSize, square_mm};
 pub use error::CameraError;
-pub use options::{CameraOptions, Inputs, Outputs};
+pub use options::{CameraOptions, Inputs};
 pub use report::{CameraFigures, CameraReport, LensFigures, PlaneFigures, ViewFigures};
 pub use run::job::run;
 pub use run::plan::plan;

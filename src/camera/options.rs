@@ -44,14 +44,3 @@ pub struct Inputs {
     /// A photograph or video of the board in the finger's plane.
     pub plane: Option<PathBuf>,
 }
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct Outputs {
-    /// The table `[camera]`; report and pictures stand beside it, named after it.
-    pub camera: PathBuf,
-    /// Whether pictures are drawn.
-    pub figures: bool,
-    /// Whether the report is written beside it.
-    pub report: bool,
-}

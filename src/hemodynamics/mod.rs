@@ -21,19 +21,17 @@ use lunula_hemodynamics::Parameters;
 
 pub use choices::OpticsChoice;
 pub use curve::{
-    CurveFigures, CurveOptions, CurveOutputs, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, Pressed, curve,
-    curve_plan,
+    CurveFigures, CurveOptions, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, Pressed, curve, curve_plan,
 };
 pub use error::HemodynamicsError;
 pub use fit::{
-    Between, FitFigures, FitInputs, FitOptions, FitOutputs, FitReport, FittedGroup, FittedPhotodiode, PhotodiodeColumn,
+    Between, FitFigures, FitInputs, FitOptions, FitReport, FittedGroup, FittedPhotodiode, PhotodiodeColumn,
     RecordingColumns, RecordingReport, fit, fit_plan, own_parameters, voltages,
 };
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use response::Response;
 pub use simulate::{
-    Collapsed, SimulateFigures, SimulateInputs, SimulateOptions, SimulateOutputs, SimulateReport, Work, simulate,
-    simulate_plan,
+    Collapsed, SimulateFigures, SimulateInputs, SimulateOptions, SimulateReport, Work, simulate, simulate_plan,
 };
 pub use solve::{Run, RunSettings, respond};
 

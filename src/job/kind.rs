@@ -13,6 +13,9 @@ use super::{Given, Keys, OptionFault, Said, keys, read};
 use crate::stages::Step;
 use crate::video::Header;
 
+/// The part that the pictures are.
+const PICTURES: &str = "pictures";
+
 /// How many files a role takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {
@@ -69,6 +72,12 @@ impl Part {
     pub const fn if_wanted(name: &'static str, file: &'static str) -> Self {
         Self { name, file, only_if_wanted: true }
     }
+
+    /// The pictures.
+    #[must_use]
+    pub const fn pictures(file: &'static str) -> Self {
+        Self::if_wanted(PICTURES, file)
+    }
 }
 
 /// A kind of job.
@@ -118,6 +127,12 @@ impl Demand {
     #[must_use]
     pub fn wants(&self, part: &str) -> bool {
         self.parts.contains(part)
+    }
+
+    /// Whether pictures are needed.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        self.wants(PICTURES)
     }
 }
 

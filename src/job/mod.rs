@@ -6,6 +6,7 @@
 mod keys;
 mod kind;
 mod options;
+mod outputs;
 mod report;
 mod truth;
 mod watch;
@@ -14,6 +15,7 @@ mod work;
 pub use keys::Keys;
 pub use kind::{Demand, Facts, Foreseen, Job, Kind, Maker, Order, Part, Prepared, Role, Takes, prepare, prepared};
 pub use options::{Given, OptionFault, Said, Tables, defaults, keys, not_negative, number, one_of, read};
+pub use outputs::Outputs;
 pub use report::Report;
 pub use truth::against;
 pub use watch::{Interrupted, Watch};

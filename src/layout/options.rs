@@ -135,14 +135,3 @@ pub struct LayoutInputs {
     /// Places of the columns `P1`, `P2`, ..: TOML or JSON.
     pub positions: Option<PathBuf>,
 }
-
-/// Where results go.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LayoutOutputs {
-    /// The folder.
-    pub folder: PathBuf,
-    /// Whether pictures are drawn.
-    pub figures: bool,
-    /// Whether the report `run.json` is written.
-    pub report: bool,
-}

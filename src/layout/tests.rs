@@ -8,7 +8,7 @@ use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
 
 use super::*;
-use crate::job::{Watch, read};
+use crate::job::{Outputs, Watch, read};
 use crate::nail::Positions;
 use crate::table::Table;
 
@@ -37,7 +37,7 @@ impl Folder {
         let data =
             files.iter().map(|name| LayoutInput { name: (*name).to_owned(), ..self.path(name).into() }).collect();
         let positions = Some(self.path("positions.toml")).filter(|path| path.exists());
-        let outputs = LayoutOutputs { folder: self.path("out"), figures: false, report: true };
+        let outputs = Outputs { figures: false, ..Outputs::all(self.path("out")) };
         run(&LayoutInputs { data, positions }, &given.options, &outputs, &Watch::nobody())
     }
 
@@ -372,7 +372,7 @@ fn pictures_show_the_places_and_the_errors() {
     folder.write("a.csv", &cells(0, 100, noisy)).write("b.csv", &cells(1, 100, noisy));
     let given = read::<LayoutOptions>(&"k = '1..3'\nchoose = 3".parse().unwrap(), "").unwrap();
     let data = ["a.csv", "b.csv"].map(|name| LayoutInput::from(folder.path(name))).to_vec();
-    let outputs = LayoutOutputs { folder: folder.path("out"), figures: true, report: false };
+    let outputs = Outputs { report: false, ..Outputs::all(folder.path("out")) };
     let inputs = LayoutInputs { data, positions: None };
     let report = run(&inputs, &given.options, &outputs, &Watch::nobody()).unwrap();
     let names = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();

@@ -29,8 +29,7 @@ pub use session::{
 pub use steps::{live_steps, record_steps};
 pub use switch::{
     ContactOptions, CurvePoint, EvaluateSwitchFigures, EvaluateSwitchReport, OutsideChoice, SwitchInputs, TrueContact,
-    TuneFigures, TuneOptions, TuneOutputs, TuneReport, evaluate_plan, evaluate_switch, read_switch, tune_plan,
-    tune_switch,
+    TuneFigures, TuneOptions, TuneReport, evaluate_plan, evaluate_switch, read_switch, tune_plan, tune_switch,
 };
 pub(crate) use switch::{FALSE_PER_HOUR, Traces, read_traces};
 pub use view::{View, Window};

@@ -10,9 +10,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use lunula::align::{AlignInputs, AlignOptions, AlignOutputs, run as align};
-use lunula::job::Watch;
+use lunula::job::{Outputs, Watch};
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
-use lunula::predictor::FolderOutputs;
 use lunula::predictor::models::{Kind, Recipe};
 use lunula_thesis::compare::{CompareOptions, Person, compare};
 use rayon::prelude::*;
@@ -34,7 +33,7 @@ fn main() -> anyhow::Result<()> {
     let people = people.collect::<anyhow::Result<Vec<_>>>()?;
     let kinds = [Kind::Linear, Kind::Quadratic, Kind::Network { hidden: 8 }];
     let options = CompareOptions { models: kinds.map(Recipe::new).to_vec(), bending_s: Protocol::Touch.seconds()[0] };
-    let report = compare(&people, &options, Some(&FolderOutputs::all(out.clone())), &Watch::nobody())?;
+    let report = compare(&people, &options, Some(&Outputs::all(out.clone())), &Watch::nobody())?;
     report.warnings.iter().for_each(|warning| eprintln!("note: {warning}"));
     for comparison in &report.comparisons {
         println!("{}", comparison.markdown());

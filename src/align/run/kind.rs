@@ -25,7 +25,6 @@ const TRACKS: &str = "tracks";
 const MOT: &str = "mot";
 const BIDS: &str = "bids";
 const DLC: &str = "dlc";
-const PICTURES: &str = "pictures";
 
 /// A stage of a pipeline.
 #[derive(Debug, Clone, Args)]
@@ -55,7 +54,7 @@ impl AlignJob {
             mot: place(MOT, "angles.mot"),
             bids: place(BIDS, "bids"),
             dlc: place(DLC, "markers.csv"),
-            figures: demand.wants(PICTURES),
+            figures: demand.draws(),
             report: false,
         }
     }
@@ -81,7 +80,7 @@ impl Job for AlignJob {
             Part::if_wanted(MOT, "angles.mot"),
             Part::if_wanted(BIDS, "bids"),
             Part::if_wanted(DLC, "markers.csv"),
-            Part::if_wanted(PICTURES, "training-labels.png"),
+            Part::pictures("training-labels.png"),
         ],
     )
     .revision(8);

@@ -9,13 +9,13 @@ use crate::camera::draw::draw;
 use crate::camera::error::CameraError;
 use crate::camera::fit::{Fit, fit};
 use crate::camera::judge::{FEWEST_VIEWS, Sorted, View, covered, refuse, sort, warnings, words};
-use crate::camera::options::{CameraOptions, Inputs, Outputs};
+use crate::camera::options::{CameraOptions, Inputs};
 use crate::camera::report::{About, CameraReport, figures};
 use crate::camera::run::plan::steps;
 use crate::camera::views::{Look, files, look};
 use crate::files::{Places, beside};
 use crate::input::same_to_the_byte;
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::photograph::is_picture;
 use crate::stages::{Stages, left_out};
 
@@ -38,9 +38,9 @@ pub fn run(
     let stages = Stages::default();
     let mut files = files(&inputs.views)?;
     let copied = leave_copies_out(&mut files, inputs.plane.as_deref());
-    let report_at = outputs.report.then(|| beside(&outputs.camera, ".run.json"));
+    let report_at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
     let mut places = Places::not_over(files.iter().chain(&inputs.plane));
-    places.check([Some(&outputs.camera), report_at.as_ref()].into_iter().flatten())?;
+    places.check([Some(&outputs.out), report_at.as_ref()].into_iter().flatten())?;
     let looks = look(&files, options, &stages, watch)?;
     let looked_at = looks.len();
     let mut sorted = sort(looks)?;
@@ -55,7 +55,7 @@ pub fn run(
     let held = stages.time("lens", || held_at_0(&fitted, &views, kind.size, options))?;
     let covered = covered(&views, kind.size);
     let about = About {
-        camera: outputs.camera.clone(),
+        camera: outputs.out.clone(),
         board: options.board,
         square_mm: options.square_mm,
         size: kind.size,
@@ -65,10 +65,10 @@ pub fn run(
     let figures = figures(&fitted, &views, covered, about)?;
     notes.extend(weak_k3(&fitted, options));
     notes.extend(not_measured(&fitted));
-    places.write(&outputs.camera, &figures.toml())?;
+    places.write(&outputs.out, &figures.toml())?;
     let mut pictures = Vec::new();
     if outputs.figures {
-        pictures.push(places.draw(&outputs.camera, PICTURE, |png, svg| {
+        pictures.push(places.draw(&outputs.out, PICTURE, |png, svg| {
             stages.time("figures", || draw(&fitted, &views, kind.size, png, svg))
         })?);
     }

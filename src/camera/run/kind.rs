@@ -1,19 +1,14 @@
 //! `camera` in a pipeline: views of a chessboard to a lens.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::camera::options::{CameraOptions, Inputs, Outputs};
+use crate::camera::options::{CameraOptions, Inputs};
 use crate::camera::run::job::run;
 use crate::camera::run::plan::{plan, steps};
 use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
 use crate::stages::Step;
 
 const CAMERA: &str = "camera.toml";
-const PICTURES: &str = "pictures";
-
-fn outputs(folder: &Path, demand: &Demand) -> Outputs {
-    Outputs { camera: folder.join(CAMERA), figures: demand.wants(PICTURES), report: false }
-}
 
 impl Job for CameraOptions {
     const KIND: Kind = Kind::of::<Self>(
@@ -22,12 +17,12 @@ impl Job for CameraOptions {
             Role::new("views", Takes::Many, "photographs or videos of a chessboard"),
             Role::new("plane", Takes::Optional, "the board in the finger's plane"),
         ],
-        &[Part::new("camera", CAMERA), Part::if_wanted(PICTURES, "camera-corners.png")],
+        &[Part::new("camera", CAMERA), Part::pictures("camera-corners.png")],
     )
     .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        let outputs = outputs(Path::new(""), demand);
+        let outputs = demand.outputs(CAMERA);
         let plane = Foreseen::of(inputs, "plane").map(|input| input.path.clone());
         if inputs.iter().any(|input| !input.exists) {
             return Ok(steps(None, plane.is_some(), self, Some(&outputs)));
@@ -45,7 +40,7 @@ impl Job for CameraOptions {
         views.sort();
         let inputs = Inputs { views, plane: work.one("plane").map(|input| input.path.clone()) };
         let options = CameraOptions { threads: work.threads, ..self.clone() };
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder.join(CAMERA));
         let report = work.run(order.said, |watch| run(&inputs, &options, &outputs, watch))?;
         let share = 100.0 * report.lens_sd.fx_px / report.lens.fx_px;
         let undistorted = |sd_px| Quality::stated("undistorted points", sd_px, "pixels, standard error, RMS");

@@ -1,8 +1,9 @@
 //! What a run would do and leave out.
 
 use crate::camera::error::CameraError;
-use crate::camera::options::{CameraOptions, Inputs, Outputs};
+use crate::camera::options::{CameraOptions, Inputs};
 use crate::camera::views::files;
+use crate::job::Outputs;
 use crate::photograph::is_picture;
 use crate::stages::Step;
 

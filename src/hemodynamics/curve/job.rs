@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use lunula_hemodynamics::{Load, Parameters};
 
-use super::{CurveFigures, CurveOptions, CurveOutputs, CurveReport, figure, table};
+use super::{CurveFigures, CurveOptions, CurveReport, figure, table};
 use crate::files::{Places, beside};
 use crate::hemodynamics::given::{SUCTION, hardly_flows, hardly_pressed};
 use crate::hemodynamics::solve::{Curve, along};
 use crate::hemodynamics::{HemodynamicsError, named};
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
 use crate::words::Words;
@@ -25,7 +25,7 @@ const PICTURE: &str = "static";
 pub fn plan(
     params: Option<&Path>,
     options: &CurveOptions,
-    outputs: Option<&CurveOutputs>,
+    outputs: Option<&Outputs>,
 ) -> Result<Vec<Step>, HemodynamicsError> {
     let parameters = options.model.parameters(params)?;
     blood(options, &parameters)?;
@@ -33,7 +33,7 @@ pub fn plan(
 }
 
 /// The one table of steps; `units` are known once the parameters are.
-pub(super) fn steps(options: &CurveOptions, outputs: Option<&CurveOutputs>, units: Option<usize>) -> Vec<Step> {
+pub(super) fn steps(options: &CurveOptions, outputs: Option<&Outputs>, units: Option<usize>) -> Vec<Step> {
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
     let loads = options.range.loads.loads_pa().len();
     let units = units.map_or(String::new(), |units| format!("{units} units, "));
@@ -70,15 +70,15 @@ fn blood(options: &CurveOptions, parameters: &Parameters) -> Result<[f64; 2], He
 pub fn curve(
     params: Option<&Path>,
     options: &CurveOptions,
-    outputs: &CurveOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<CurveReport, HemodynamicsError> {
     let start = Instant::now();
     let stages = Stages::default();
-    TableFormat::of(&outputs.table)?;
-    let report_at = outputs.report.then(|| beside(&outputs.table, ".run.json"));
+    TableFormat::of(&outputs.out)?;
+    let report_at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
     let mut places = Places::not_over(params);
-    places.check([Some(&outputs.table), report_at.as_ref()].into_iter().flatten())?;
+    places.check([Some(&outputs.out), report_at.as_ref()].into_iter().flatten())?;
     let CurveOptions { range, model, .. } = options;
     let parameters = model.parameters(params)?;
     let units = parameters.units().len();
@@ -88,13 +88,13 @@ pub fn curve(
     let Curve { points, folds, bistable_pa, closed_pa } = stages
         .time("equilibria", || along(&parameters, model.collapse, &optics, range.pressed, &loads_pa, blood_pa))?;
     watch.go_on()?;
-    let at = places.place(&outputs.table)?;
-    stages.time("table", || table::write(&parameters, range.pressed, &points, &at, &outputs.table))?;
+    let at = places.place(&outputs.out)?;
+    stages.time("table", || table::write(&parameters, range.pressed, &points, &at, &outputs.out))?;
     let mut pictures = Vec::new();
     let nothing_open = points.iter().all(|point| point.lumens.is_none());
     if outputs.figures && !nothing_open {
         let title = format!("Equilibria under {} load", range.pressed.word());
-        pictures.push(places.draw(&outputs.table, PICTURE, |png, svg| {
+        pictures.push(places.draw(&outputs.out, PICTURE, |png, svg| {
             stages.time("figures", || figure::draw_curve(&title, &points, &folds, &bistable_pa, png, svg))
         })?);
     }
@@ -104,7 +104,7 @@ pub fn curve(
     let counts: Vec<usize> = by_load.map(|own| own.iter().filter(|point| point.lumens.is_some()).count()).collect();
     let with = |is_so: fn(usize) -> bool| counts.iter().filter(|&&count| is_so(count)).count();
     let figures = CurveFigures {
-        table: outputs.table.clone(),
+        table: outputs.out.clone(),
         rows: points.len() as u64,
         units,
         load: range.pressed,

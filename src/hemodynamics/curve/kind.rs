@@ -1,23 +1,15 @@
 //! `static` in a pipeline: every equilibrium of the hemodynamic model for a range of loads (Fig. 78).
 
-use std::path::Path;
-
+use super::CurveOptions;
 use super::job::{curve, plan, steps};
-use super::{CurveOptions, CurveOutputs};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task};
 use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Work};
 use crate::stages::Step;
 
-const PICTURES: &str = "pictures";
 const TABLE: &str = "static.csv";
 
-fn outputs(folder: &Path, demand: &Demand) -> CurveOutputs {
-    CurveOutputs { table: folder.join(TABLE), figures: demand.wants(PICTURES), report: false }
-}
-
 impl Job for CurveOptions {
-    const KIND: Kind =
-        Kind::of::<Self>("static", &[PARAMS], &[Part::new("curve", TABLE), Part::if_wanted(PICTURES, "")]);
+    const KIND: Kind = Kind::of::<Self>("static", &[PARAMS], &[Part::new("curve", TABLE), Part::pictures("")]);
 
     fn checked(self) -> Result<Self, OptionFault> {
         plan(None, &self, None).map_err(OptionFault::whole)?;
@@ -25,7 +17,7 @@ impl Job for CurveOptions {
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        let outputs = outputs(Path::new(""), demand);
+        let outputs = demand.outputs(TABLE);
         if !existing(inputs) {
             return Ok(steps(self, Some(&outputs), self.model.units.map(usize::from)));
         }
@@ -43,7 +35,7 @@ impl Job for CurveOptions {
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let params = of_task(PARAMS.name, work);
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder.join(TABLE));
         let report = work.run(order.said, |watch| curve(params.as_deref(), self, &outputs, watch))?;
         Ok(report.made(Vec::new()))
     }

@@ -1,6 +1,5 @@
 //! Which equilibria: the options of `lunula simulate --static` and of a pipeline's stage.
 
-use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
@@ -125,17 +124,6 @@ pub struct CurveOptions {
     /// The model.
     #[command(flatten)]
     pub model: ModelOptions,
-}
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct CurveOutputs {
-    /// The table; report and picture go beside it, named after it.
-    pub table: PathBuf,
-    /// Whether a picture is drawn.
-    pub figures: bool,
-    /// Whether the report is written beside the table.
-    pub report: bool,
 }
 
 #[cfg(test)]

@@ -12,11 +12,11 @@ use super::recording::{ReadRecording, photodiodes, read, signs};
 use super::report::{
     FitFigures, FitReport, FittedPhotodiode, RecordingReport, correlations, groups, noises, result_text, stopped,
 };
-use super::{FitInputs, FitOptions, FitOutputs, estimates, figure, fitted, noise};
+use super::{FitInputs, FitOptions, estimates, figure, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::input::copies;
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::log::ambient_step_of;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
@@ -41,7 +41,7 @@ impl Ready {
 pub fn plan(
     inputs: &FitInputs,
     options: &FitOptions,
-    outputs: Option<&FitOutputs>,
+    outputs: Option<&Outputs>,
 ) -> Result<Vec<Step>, HemodynamicsError> {
     let ready = ready(inputs, options)?;
     if let Some(outputs) = outputs {
@@ -84,7 +84,7 @@ fn ambient(inputs: &FitInputs, options: &FitOptions) -> Step {
 pub(super) fn steps(
     inputs: &FitInputs,
     options: &FitOptions,
-    outputs: Option<&FitOutputs>,
+    outputs: Option<&Outputs>,
     ambient: Step,
     samples: Option<usize>,
 ) -> Vec<Step> {
@@ -117,7 +117,7 @@ pub(super) fn steps(
 pub fn fit(
     inputs: &FitInputs,
     options: &FitOptions,
-    outputs: &FitOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<FitReport, HemodynamicsError> {
     let begin = Instant::now();
@@ -158,14 +158,14 @@ pub fn fit(
         }
     };
     let parameter_files = parameter_files(inputs, options, &result, outputs, &mut places)?;
-    let estimates = beside(&outputs.result, "-estimates.csv");
+    let estimates = beside(&outputs.out, "-estimates.csv");
     estimates::write(&result, &ready.start, &places.place(&estimates)?, &estimates)?;
-    let table = beside(&outputs.result, "-fitted.csv");
+    let table = beside(&outputs.out, "-fitted.csv");
     let at = places.place(&table)?;
     stages.time("table", || write_table(&ready.recordings, &curves, &at, &table))?;
     let mut pictures = Vec::new();
     if outputs.figures {
-        pictures.push(places.draw(&outputs.result, "fitted", |png, svg| {
+        pictures.push(places.draw(&outputs.out, "fitted", |png, svg| {
             stages.time("figures", || figure::draw_fit(&ready.recordings, &curves, png, svg))
         })?);
     }
@@ -210,9 +210,9 @@ pub fn fit(
     let notes = notes(&ready.recordings, outputs.figures);
     let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };
     if outputs.report {
-        places.write(&outputs.result, &result_text(&report))?;
+        places.write(&outputs.out, &result_text(&report))?;
     }
-    let at = outputs.report.then(|| beside(&outputs.result, ".run.json"));
+    let at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
     Ok(report.timed(&stages, begin).commit(places, at.as_deref())?)
 }
 
@@ -341,13 +341,12 @@ fn recording_reports(
 }
 
 /// Where results go; refuses to replace an input.
-fn places(inputs: &FitInputs, options: &FitOptions, outputs: &FitOutputs) -> Result<Places, HemodynamicsError> {
-    let mut results = vec![outputs.result.clone()];
-    results
-        .extend(["-estimates.csv", "-fitted.csv", ".toml", ".run.json"].map(|ending| beside(&outputs.result, ending)));
+fn places(inputs: &FitInputs, options: &FitOptions, outputs: &Outputs) -> Result<Places, HemodynamicsError> {
+    let mut results = vec![outputs.out.clone()];
+    results.extend(["-estimates.csv", "-fitted.csv", ".toml", ".run.json"].map(|ending| beside(&outputs.out, ending)));
     results.extend(parameter_paths(inputs, options, outputs).into_iter().map(|one| one.0));
     if outputs.figures {
-        results.extend(pictures_beside(&outputs.result, "fitted"));
+        results.extend(pictures_beside(&outputs.out, "fitted"));
     }
     let places = Places::not_over(inputs.recordings.iter().chain(&inputs.params));
     places.check(&results)?;

@@ -2,11 +2,10 @@
 //!
 //! Recordings of one subject are those whose key `subject` is the same; where not all have it, all are one's.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::job::{fit, plan, steps};
-use super::{FitInputs, FitOptions, FitOutputs, FitReport};
+use super::{FitInputs, FitOptions, FitReport};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task, read_parameters};
 use crate::hemodynamics::model::Parameters;
 use crate::job::{
@@ -15,13 +14,8 @@ use crate::job::{
 use crate::log::{ambient_step, foreseen_bytes};
 use crate::stages::Step;
 
-const PICTURES: &str = "pictures";
 const RECORDINGS: &str = "recordings";
 const TRUTH: &str = "truth";
-
-fn outputs(folder: &Path, demand: &Demand) -> FitOutputs {
-    FitOutputs { result: folder.join("fit.json"), figures: demand.wants(PICTURES), report: false }
-}
 
 /// Whose each recording is; none where not all have a subject.
 fn subjects<'a>(keys: impl Iterator<Item = &'a Keys>) -> Vec<String> {
@@ -51,7 +45,7 @@ impl Job for FitOptions {
                 Part::new("params", "fit.toml"),
                 Part::new("estimates", "fit-estimates.csv"),
                 Part::new("fitted", "fit-fitted.csv"),
-                Part::if_wanted(PICTURES, ""),
+                Part::pictures(""),
             ],
         )
         .revision(6)
@@ -69,7 +63,7 @@ impl Job for FitOptions {
             names: Vec::new(),
             params: of_foreseen(PARAMS.name, inputs),
         };
-        let outputs = outputs(Path::new(""), demand);
+        let outputs = demand.outputs("fit.json");
         if existing(inputs) {
             return plan(&files, self, Some(&outputs)).map_err(|why| why.to_string());
         }
@@ -90,7 +84,7 @@ impl Job for FitOptions {
             names: work.of(RECORDINGS).map(|at| at.name.clone()).collect(),
             params: of_task(PARAMS.name, work),
         };
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder.join("fit.json"));
         let report = work.run(order.said, |watch| fit(&inputs, self, &outputs, watch))?;
         let mut quality = stated(&report);
         if let Some(at) = work.one(TRUTH) {

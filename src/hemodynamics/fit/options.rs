@@ -72,17 +72,6 @@ fn noise(text: &str) -> Result<(String, f64), String> {
     Ok((name.trim().to_owned(), volts))
 }
 
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct FitOutputs {
-    /// The result; parameter files, tables and picture go beside it, named after it.
-    pub result: PathBuf,
-    /// Whether a picture is drawn.
-    pub figures: bool,
-    /// Whether the result itself and the report beside it are written; a pipeline keeps both in its record.
-    pub report: bool,
-}
-
 impl FitOptions {
     /// Names of what is free; none: the photodiodes alone.
     pub(super) fn free(&self) -> &[String] {

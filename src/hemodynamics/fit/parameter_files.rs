@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 
 use lunula_hemodynamics::{Calibration, FitResult, Parameters};
 
-use super::{FitInputs, FitOptions, FitOutputs, fitted};
+use super::{FitInputs, FitOptions, fitted};
 use crate::files::{Places, beside};
 use crate::hemodynamics::HemodynamicsError;
+use crate::job::Outputs;
 
 /// Parameter files and whose recordings each is for: one for all whose photodiodes have the same offset and scaling.
 pub(super) fn parameter_paths(
     inputs: &FitInputs,
     options: &FitOptions,
-    outputs: &FitOutputs,
+    outputs: &Outputs,
 ) -> Vec<(PathBuf, Vec<usize>)> {
     let label = |k: usize| match options.calibrate {
         Calibration::Fixed | Calibration::Shared => String::new(),
@@ -42,7 +43,7 @@ pub(super) fn parameter_paths(
             (_, 0) => format!("-{name}.toml"),
             (_, before) => format!("-{name}-{}.toml", before + 1),
         };
-        (beside(&outputs.result, &ending), own)
+        (beside(&outputs.out, &ending), own)
     };
     labels.into_iter().enumerate().map(one).collect()
 }
@@ -53,7 +54,7 @@ pub(super) fn parameter_files(
     inputs: &FitInputs,
     options: &FitOptions,
     result: &FitResult,
-    outputs: &FitOutputs,
+    outputs: &Outputs,
     places: &mut Places,
 ) -> Result<Vec<PathBuf>, HemodynamicsError> {
     let mut files = Vec::new();
@@ -64,7 +65,7 @@ pub(super) fn parameter_files(
         places.write(&path, &parameters.to_toml())?;
         files.push(path);
     }
-    let shared = beside(&outputs.result, ".toml");
+    let shared = beside(&outputs.out, ".toml");
     if !files.contains(&shared) {
         places.write(&shared, &result.parameters.to_toml())?;
     }

@@ -5,13 +5,13 @@ use std::time::Instant;
 use lunula_hemodynamics::{Load, Parameters};
 
 use super::report::{Collapsed, LoadsReport, SimulateFigures, SimulateReport};
-use super::{SimulateInputs, SimulateOptions, SimulateOutputs, table};
+use super::{SimulateInputs, SimulateOptions, table};
 use crate::files::{Places, beside};
 use crate::hemodynamics::figures::draw_response;
 use crate::hemodynamics::given::{LoadOptions, ReadLoads, SUCTION, Start};
 use crate::hemodynamics::solve::{Run, RunSettings, respond, start_state};
 use crate::hemodynamics::{HemodynamicsError, named};
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
 
@@ -31,7 +31,7 @@ struct Ready {
 pub fn plan(
     inputs: &SimulateInputs,
     options: &SimulateOptions,
-    outputs: Option<&SimulateOutputs>,
+    outputs: Option<&Outputs>,
 ) -> Result<Vec<Step>, HemodynamicsError> {
     let ready = ready(inputs, options)?;
     Ok(steps(options, outputs, Some(ready.parameters.units().len())))
@@ -48,7 +48,7 @@ fn ready(inputs: &SimulateInputs, options: &SimulateOptions) -> Result<Ready, He
 }
 
 /// The one table of steps; `units` are known once the parameters are.
-pub(super) fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, units: Option<usize>) -> Vec<Step> {
+pub(super) fn steps(options: &SimulateOptions, outputs: Option<&Outputs>, units: Option<usize>) -> Vec<Step> {
     let units = units.map_or(String::new(), |units| format!("{units} units, "));
     let start = match &options.start {
         None => "of the loads just before t = 0".to_owned(),
@@ -76,16 +76,16 @@ pub(super) fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>
 pub fn simulate(
     inputs: &SimulateInputs,
     options: &SimulateOptions,
-    outputs: &SimulateOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<SimulateReport, HemodynamicsError> {
     let begin = Instant::now();
     let stages = Stages::default();
-    TableFormat::of(&outputs.table)?;
-    let report_at = outputs.report.then(|| beside(&outputs.table, ".run.json"));
+    TableFormat::of(&outputs.out)?;
+    let report_at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
     let from = if let Some(Start::File(path)) = &options.start { Some(path) } else { None };
     let mut places = Places::not_over([inputs.params.as_ref(), inputs.loads.as_ref(), from].into_iter().flatten());
-    places.check([Some(&outputs.table), report_at.as_ref()].into_iter().flatten())?;
+    places.check([Some(&outputs.out), report_at.as_ref()].into_iter().flatten())?;
     let Ready { parameters, loads } = stages.time("read", || ready(inputs, options))?;
     let model = &options.model;
     let optics = model.optics.optics(&parameters)?;
@@ -109,18 +109,18 @@ pub fn simulate(
     }
     watch.go_on()?;
     let shown = options.with_loads.then_some(&loads.loads);
-    let at = places.place(&outputs.table)?;
-    stages.time("table", || table::write(&parameters, &response, shown, &at, &outputs.table))?;
+    let at = places.place(&outputs.out)?;
+    stages.time("table", || table::write(&parameters, &response, shown, &at, &outputs.out))?;
     let mut pictures = Vec::new();
     if outputs.figures {
-        pictures.push(places.draw(&outputs.table, PICTURE, |png, svg| {
+        pictures.push(places.draw(&outputs.out, PICTURE, |png, svg| {
             stages.time("figures", || draw_response(&parameters, &loads.loads, &response, png, svg))
         })?);
     }
     watch.go_on()?;
     let left_out = left_out(steps(options, Some(outputs), Some(parameters.units().len())));
     let figures = SimulateFigures {
-        table: outputs.table.clone(),
+        table: outputs.out.clone(),
         rows: response.rows() as u64,
         last_s: response.times_s.last().copied(),
         units: parameters.units().len(),

@@ -1,21 +1,16 @@
 //! `simulate` in a pipeline: the hemodynamic model under loads over time (4.3).
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::job::{plan, simulate, steps};
-use super::{SimulateInputs, SimulateOptions, SimulateOutputs};
+use super::{SimulateInputs, SimulateOptions};
 use crate::hemodynamics::given::{PARAMS, Start, existing, of_foreseen, of_task};
 use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
 use crate::stages::Step;
 
-const PICTURES: &str = "pictures";
 const TABLE: &str = "trajectory.csv";
 const LOADS: &str = "loads";
 const START: &str = "start";
-
-fn outputs(folder: &Path, demand: &Demand) -> SimulateOutputs {
-    SimulateOutputs { table: folder.join(TABLE), figures: demand.wants(PICTURES), report: false }
-}
 
 impl SimulateOptions {
     /// The stage's files and options; the error says what is given twice.
@@ -40,7 +35,7 @@ impl Job for SimulateOptions {
             Role::new(LOADS, Takes::Optional, "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2"),
             Role::new(START, Takes::Optional, "a trajectory whose last row it starts from"),
         ],
-        &[Part::new("trajectory", TABLE), Part::if_wanted(PICTURES, "")],
+        &[Part::new("trajectory", TABLE), Part::pictures("")],
     )
     .revision(3);
 
@@ -56,7 +51,7 @@ impl Job for SimulateOptions {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let (files, options) = self.with(|role| of_foreseen(role, inputs))?;
-        let outputs = outputs(Path::new(""), demand);
+        let outputs = demand.outputs(TABLE);
         if existing(inputs) {
             plan(&files, &options, Some(&outputs)).map_err(|why| why.to_string())
         } else {
@@ -76,7 +71,7 @@ impl Job for SimulateOptions {
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let (inputs, options) = self.with(|role| of_task(role, work)).map_err(anyhow::Error::msg)?;
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder.join(TABLE));
         let report = work.run(order.said, |watch| simulate(&inputs, &options, &outputs, watch))?;
         let quality = Quality::stated("lumens", report.rtol, "of the nominal diameter, at most");
         Ok(report.made(vec![quality]))

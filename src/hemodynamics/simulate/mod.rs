@@ -7,5 +7,5 @@ mod report;
 mod table;
 
 pub use job::{plan as simulate_plan, simulate};
-pub use options::{SimulateInputs, SimulateOptions, SimulateOutputs};
+pub use options::{SimulateInputs, SimulateOptions};
 pub use report::{Collapsed, SimulateFigures, SimulateReport, Work};

@@ -54,17 +54,6 @@ impl Default for SimulateOptions {
     }
 }
 
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct SimulateOutputs {
-    /// The table; report and picture go beside it, named after it.
-    pub table: PathBuf,
-    /// Whether a picture is drawn.
-    pub figures: bool,
-    /// Whether the report is written beside the table.
-    pub report: bool,
-}
-
 /// More values than a run keeps at once.
 const MOST_VALUES: f64 = 1e8;
 

@@ -11,10 +11,10 @@ use super::plan::steps;
 use super::report::{ChosenFigures, LayoutFigures, LayoutReport, MethodFigures};
 use super::results::{POSITIONS, TABLE, write};
 use crate::files::{Places, WriteError, is_same_file};
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::layout::draw::{draw_errors, draw_places};
 use crate::layout::error::LayoutError;
-use crate::layout::options::{LayoutInputs, LayoutOptions, LayoutOutputs};
+use crate::layout::options::{LayoutInputs, LayoutOptions};
 use crate::layout::read::{Given, Target, is_maps, is_photodiode, read};
 use crate::layout::solve::{Method, Solved, Solver, smallest_sufficient, thesis};
 use crate::nail::{Position, Positions};
@@ -35,12 +35,12 @@ const NEAR: f64 = 0.25;
 pub fn run(
     inputs: &LayoutInputs,
     options: &LayoutOptions,
-    outputs: &LayoutOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<LayoutReport, LayoutError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let folder = &outputs.folder;
+    let folder = &outputs.out;
     let mut places = Places::not_over(inputs.data.iter().map(|input| &input.path).chain(&inputs.positions));
     places.check([POSITIONS, TABLE, REPORT].map(|name| folder.join(name)))?;
     // The report of what is read has the same name.

@@ -1,23 +1,15 @@
 //! `layout` in a pipeline: recordings or maps to places.
 
-use std::path::Path;
-
 use super::job::run;
 use super::plan::steps;
 use super::report::LayoutFigures;
 use super::results::{POSITIONS, TABLE};
 use crate::job::{At, Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
-use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions, LayoutOutputs};
+use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
 use crate::layout::read::is_maps;
 use crate::layout::solve::Method;
 use crate::log::ReadingCost;
 use crate::stages::Step;
-
-const PICTURES: &str = "pictures";
-
-fn outputs(folder: &Path, demand: &Demand) -> LayoutOutputs {
-    LayoutOutputs { folder: folder.to_owned(), figures: demand.wants(PICTURES), report: false }
-}
 
 fn input(at: &At) -> LayoutInput {
     LayoutInput { path: at.path.clone(), name: at.name.clone(), subject: at.keys.get("subject").map(str::to_owned) }
@@ -30,14 +22,14 @@ impl Job for LayoutOptions {
             Role::new("data", Takes::Many, "tables of cells or photodiodes with targets, or maps"),
             Role::new("positions", Takes::Optional, "where the photodiodes are"),
         ],
-        &[Part::new("layout", POSITIONS), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
+        &[Part::new("layout", POSITIONS), Part::new("table", TABLE), Part::pictures("")],
     )
     .revision(8);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let data: Vec<&Foreseen> = inputs.iter().filter(|input| input.role == "data").collect();
         let maps = matches!(&data[..], [one] if is_maps(&one.path));
-        Ok(steps(data.len(), maps, self, Some(&outputs(Path::new(""), demand))))
+        Ok(steps(data.len(), maps, self, Some(&demand.outputs(""))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -51,7 +43,7 @@ impl Job for LayoutOptions {
             data: work.of("data").map(input).collect(),
             positions: work.one("positions").map(|input| input.path.clone()),
         };
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder);
         let report = work.run(order.said, |watch| run(&inputs, self, &outputs, watch))?;
         let quality = quality(&report);
         Ok(report.made(quality))

@@ -1,12 +1,13 @@
 //! What a run would do and leave out.
 
-use crate::layout::options::{LayoutInputs, LayoutOptions, LayoutOutputs};
+use crate::job::Outputs;
+use crate::layout::options::{LayoutInputs, LayoutOptions};
 use crate::layout::read::is_maps;
 use crate::stages::Step;
 
 /// Plans a run; `outputs` may be open yet.
 #[must_use]
-pub fn plan(inputs: &LayoutInputs, options: &LayoutOptions, outputs: Option<&LayoutOutputs>) -> Vec<Step> {
+pub fn plan(inputs: &LayoutInputs, options: &LayoutOptions, outputs: Option<&Outputs>) -> Vec<Step> {
     let maps = matches!(&inputs.data[..], [one] if is_maps(&one.path));
     steps(inputs.data.len(), maps, options, outputs)
 }
@@ -16,7 +17,7 @@ pub(in crate::layout) fn steps(
     files: usize,
     maps: bool,
     options: &LayoutOptions,
-    outputs: Option<&LayoutOutputs>,
+    outputs: Option<&Outputs>,
 ) -> Vec<Step> {
     let what = if maps { "maps and normalized pictures".to_owned() } else { format!("{files} tables or logs") };
     let figures = outputs.is_none_or(|outputs| outputs.figures);

@@ -12,9 +12,8 @@ use super::report::{PerformanceFigures, PerformanceReport};
 use super::tables::{MEANS, ROWS, write_means, write_rows};
 use super::{PerformanceError, analysis, figures};
 use crate::files::Places;
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::median::median_of;
-use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
 use crate::words::{instead, twins};
 
@@ -25,7 +24,7 @@ const REPORT: &str = "run.json";
 
 /// What would be done and what not.
 #[must_use]
-pub fn plan(outputs: Option<&FolderOutputs>) -> Vec<Step> {
+pub fn plan(outputs: Option<&Outputs>) -> Vec<Step> {
     let rows = outputs.is_none_or(|outputs| outputs.rows);
     let why = if rows { "of each row" } else { "not asked for" };
     vec![
@@ -34,7 +33,7 @@ pub fn plan(outputs: Option<&FolderOutputs>) -> Vec<Step> {
         Step::new("learning curves", true, "exponential and power law".to_owned()),
         Step::new("comparison", true, "of each method with the baseline".to_owned()),
         Step::new("time per decision", rows, why.to_owned()),
-        FolderOutputs::figures_step(outputs, "by operator, and means with curves"),
+        Outputs::figures_step(outputs, "by operator, and means with curves"),
     ]
 }
 
@@ -46,12 +45,12 @@ pub fn run(
     data: &Path,
     name: &str,
     options: &PerformanceOptions,
-    outputs: &FolderOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<PerformanceReport, PerformanceError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let folder = &outputs.folder;
+    let folder = &outputs.out;
     let mut places = Places::not_over([data]);
     places.check([FIGURES, MEANS, ROWS, REPORT].map(|name| folder.join(name)))?;
     let course = options.course();
@@ -182,7 +181,7 @@ fn cumulative(trials: &Trials, course: &Course) -> Option<String> {
 }
 
 /// What was chosen or could not be known.
-fn notes(figures: &PerformanceFigures, outputs: &FolderOutputs) -> Vec<String> {
+fn notes(figures: &PerformanceFigures, outputs: &Outputs) -> Vec<String> {
     let mut notes = Vec::new();
     match figures.rows_without_time {
         0 => {}

@@ -5,18 +5,15 @@ use std::path::Path;
 use super::job::{FIGURES, plan, run};
 use super::options::PerformanceOptions;
 use super::tables::{MEANS, ROWS};
-use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
-use crate::predictor::FolderOutputs;
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Outputs, Part, Role, Takes, Work};
 use crate::stages::Step;
 
-const PICTURES: &str = "pictures";
 const ROWS_PART: &str = "rows";
 /// A table of trials is small; what is drawn takes the time (measured: 0.04 s for two pictures of 99 trials).
 const COST: (u64, f64) = (64 << 20, 0.1);
 
-fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
-    let folder = folder.to_owned();
-    FolderOutputs { folder, rows: demand.wants(ROWS_PART), figures: demand.wants(PICTURES), report: false }
+fn outputs(folder: &Path, demand: &Demand) -> Outputs {
+    Outputs { rows: demand.wants(ROWS_PART), ..demand.outputs(folder) }
 }
 
 impl Job for PerformanceOptions {
@@ -27,7 +24,7 @@ impl Job for PerformanceOptions {
             Part::new("performance", FIGURES),
             Part::new("means", MEANS),
             Part::if_wanted(ROWS_PART, ROWS),
-            Part::if_wanted(PICTURES, ""),
+            Part::pictures(""),
         ],
     )
     .revision(4);

@@ -15,9 +15,8 @@ use super::table::{self, TABLE};
 use super::{SkillError, summary};
 use crate::files::Places;
 use crate::input::copies;
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::log::doubts;
-use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
 use crate::words::twins;
 
@@ -34,7 +33,7 @@ pub fn plan(
     recordings: usize,
     reference: bool,
     options: &SkillOptions,
-    outputs: Option<&FolderOutputs>,
+    outputs: Option<&Outputs>,
 ) -> Result<Vec<Step>, SkillError> {
     let mut faults = options.faults();
     if reference && options.reference_trial.is_some() {
@@ -50,7 +49,7 @@ pub fn plan(
         Step::new("contacts", true, format!("from {} N on, to {} N", options.touch_n, options.release_n)),
         Step::new("distance from a reference", compared, why.to_owned()),
         Step::new("means", true, "over trials, and over people".to_owned()),
-        FolderOutputs::figures_step(outputs, "forces by trial, figures over trials"),
+        Outputs::figures_step(outputs, "forces by trial, figures over trials"),
     ])
 }
 
@@ -72,13 +71,13 @@ struct Done {
 pub fn run(
     inputs: &SkillInputs,
     options: &SkillOptions,
-    outputs: &FolderOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<SkillReport, SkillError> {
     let start = Instant::now();
     let stages = Stages::default();
     let steps = plan(inputs.recordings.len(), inputs.reference.is_some(), options, Some(outputs))?;
-    let folder = &outputs.folder;
+    let folder = &outputs.out;
     let files = inputs.recordings.iter().chain(&inputs.reference).map(|one| &one.path);
     let mut places = Places::not_over(files);
     places.check([FIGURES, TABLE, REPORT].map(|name| folder.join(name)))?;

@@ -1,20 +1,11 @@
 //! `skill` in a pipeline: what fingers did in trials (6.3).
 
-use std::path::Path;
-
 use super::job::{FIGURES, plan, run};
 use super::options::{SkillInputs, SkillOptions, SkillRecording};
 use super::table::TABLE;
 use crate::job::{At, Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use crate::log::ReadingCost;
-use crate::predictor::FolderOutputs;
 use crate::stages::Step;
-
-const PICTURES: &str = "pictures";
-
-fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
-    FolderOutputs { folder: folder.to_owned(), rows: true, figures: demand.wants(PICTURES), report: false }
-}
 
 fn recording(input: &At) -> SkillRecording {
     let of = |key: &str| input.keys.get(key).map(str::to_owned);
@@ -33,7 +24,7 @@ impl Job for SkillOptions {
             Role::new("recordings", Takes::Many, "tables or logs with time_s and FINGER.Fz_N"),
             Role::new("reference", Takes::Optional, "a trial that the others are compared with"),
         ],
-        &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
+        &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::pictures("")],
     )
     .revision(7);
 
@@ -45,7 +36,7 @@ impl Job for SkillOptions {
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let recordings = inputs.iter().filter(|input| input.role == "recordings").count();
         let reference = Foreseen::of(inputs, "reference").is_some();
-        plan(recordings, reference, self, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
+        plan(recordings, reference, self, Some(&demand.outputs(""))).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -59,7 +50,7 @@ impl Job for SkillOptions {
             recordings: work.of("recordings").map(recording).collect(),
             reference: work.one("reference").map(recording),
         };
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder);
         let report = work.run(order.said, |watch| run(&inputs, self, &outputs, watch))?;
         Ok(report.made(Vec::new()))
     }

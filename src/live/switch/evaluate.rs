@@ -16,9 +16,8 @@ use super::options::ContactOptions;
 use super::report::{elsewhere, note, of_another_model};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::Staging;
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
-use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
 
@@ -47,13 +46,13 @@ pub fn evaluate_switch(
     switch: &Path,
     inputs: &SwitchInputs,
     options: &ContactOptions,
-    outputs: &FolderOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<EvaluateSwitchReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
     let config = read_switch(switch)?;
-    let FolderOutputs { folder: out, rows, figures, report: with_report } = outputs;
+    let Outputs { out, figures, report: with_report, .. } = outputs;
     let staging = Staging::new(out)?;
     let Traces { recordings: read, traces, led, model_sha256, mut warnings, notes, failed } =
         stages.time("predict", || read_traces(inputs, config.column.as_deref(), options, watch))?;
@@ -65,7 +64,7 @@ pub fn evaluate_switch(
         warnings,
         notes,
         failed,
-        left_out: left_out(evaluate_plan(inputs.recordings.len(), *rows, *figures)),
+        left_out: left_out(evaluate_plan(inputs.recordings.len(), Some(outputs))),
         ..Report::new(
             "switch evaluate",
             watch,
@@ -80,10 +79,8 @@ pub fn evaluate_switch(
     note(&mut report, &all, inputs, options, led);
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
     report.warnings.extend(elsewhere(&read, &traces, &found));
-    if *rows {
-        let at = staging.place("presses.csv")?;
-        write_presses(&at, &out.join("presses.csv"), &read, &found)?;
-    }
+    let at = staging.place("presses.csv")?;
+    write_presses(&at, &out.join("presses.csv"), &read, &found)?;
     if *figures {
         let (png, svg) = (staging.place("delays.png")?, staging.place("delays.svg")?);
         let drawn = stages.time("figures", || draw_delays(&found, &png, &svg));
@@ -133,12 +130,12 @@ fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Ma
 
 /// What would be done and what not.
 #[must_use]
-pub fn evaluate_plan(recordings: usize, rows: bool, figures: bool) -> Vec<Step> {
+pub fn evaluate_plan(recordings: usize, outputs: Option<&Outputs>) -> Vec<Step> {
     vec![
         Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
         Step::new("switch", true, "against true contact".to_owned()),
-        Step::new("presses", rows, if rows { "one row each" } else { "not asked for" }.to_owned()),
-        Step::new("figures", figures, if figures { "delays" } else { "not asked for" }.to_owned()),
+        Step::new("presses", true, "one row each".to_owned()),
+        Outputs::figures_step(outputs, "delays"),
     ]
 }
 

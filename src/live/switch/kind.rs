@@ -5,14 +5,13 @@ use lunula_live::switch::Evaluation;
 use super::evaluate::{evaluate_plan, evaluate_switch};
 use super::options::{ContactOptions, TuneOptions};
 use super::traces::SwitchInputs;
-use super::tune::{TuneOutputs, tune_plan, tune_switch};
+use super::tune::{tune_plan, tune_switch};
 use crate::job::{At, Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
 use crate::log::ReadingCost;
-use crate::predictor::{DataFile, FolderOutputs};
+use crate::predictor::DataFile;
 use crate::stages::Step;
 
 const SWITCH: &str = "switch.toml";
-const PICTURES: &str = "pictures";
 const RECORDINGS: Role =
     Role::new("recordings", Takes::Many, "tables or logs with photodiodes and what is true of contact");
 const MODEL: Role = Role::new("model", Takes::Many, "trained models");
@@ -51,15 +50,12 @@ fn cost(inputs: &[Foreseen], row_s: f64) -> (u64, f64) {
 }
 
 impl Job for TuneOptions {
-    const KIND: Kind = Kind::of::<Self>(
-        "switch-tune",
-        &[RECORDINGS, MODEL],
-        &[Part::new("switch", SWITCH), Part::if_wanted(PICTURES, "")],
-    )
-    .revision(6);
+    const KIND: Kind =
+        Kind::of::<Self>("switch-tune", &[RECORDINGS, MODEL], &[Part::new("switch", SWITCH), Part::pictures("")])
+            .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        Ok(tune_plan(recordings(inputs), demand.wants(PICTURES)))
+        Ok(tune_plan(recordings(inputs), Some(&demand.outputs(""))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -68,8 +64,7 @@ impl Job for TuneOptions {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        let (switch, figures) = (work.folder.join(SWITCH), order.demand.wants(PICTURES));
-        let outputs = TuneOutputs { switch, figures, report: false };
+        let outputs = order.demand.outputs(work.folder.join(SWITCH));
         let report = work.run(order.said, |watch| tune_switch(&inputs(work), self, &outputs, watch))?;
         let quality = report.held_out.as_ref().map(quality).unwrap_or_default();
         Ok(report.made(quality))
@@ -80,12 +75,12 @@ impl Job for ContactOptions {
     const KIND: Kind = Kind::of::<Self>(
         "switch-evaluate",
         &[RECORDINGS, MODEL, Role::new("switch", Takes::One, "a switch: switch.toml")],
-        &[Part::new("presses", "presses.csv"), Part::if_wanted(PICTURES, "")],
+        &[Part::new("presses", "presses.csv"), Part::pictures("")],
     )
     .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        Ok(evaluate_plan(recordings(inputs), true, demand.wants(PICTURES)))
+        Ok(evaluate_plan(recordings(inputs), Some(&demand.outputs(""))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -94,8 +89,7 @@ impl Job for ContactOptions {
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let switch = &work.needed("switch")?.path;
-        let figures = order.demand.wants(PICTURES);
-        let outputs = FolderOutputs { folder: work.folder.to_owned(), rows: true, figures, report: false };
+        let outputs = order.demand.outputs(work.folder);
         let report = work.run(order.said, |watch| evaluate_switch(switch, &inputs(work), self, &outputs, watch))?;
         let quality = quality(&report.all);
         Ok(report.made(quality))

@@ -18,4 +18,4 @@ pub use report::{CurvePoint, TuneFigures, TuneReport};
 pub use traces::SwitchInputs;
 pub(crate) use traces::{Traces, read_traces};
 pub use truth::TrueContact;
-pub use tune::{TuneOutputs, tune_plan, tune_switch};
+pub use tune::{tune_plan, tune_switch};

@@ -5,7 +5,6 @@
 //! as `lunula live` makes them.
 
 use std::iter;
-use std::path::PathBuf;
 use std::time::Instant;
 
 use lunula_live::switch::{Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
@@ -16,23 +15,12 @@ use super::options::TuneOptions;
 use super::report::{CurvePoint, TuneFigures, TuneReport, elsewhere, note};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::{Places, beside};
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
 use crate::stages::{Stages, Step, left_out};
 
 /// The picture's name, after the table's.
 const PICTURE: &str = "curve";
-
-/// Where the choice goes.
-#[derive(Debug, Clone)]
-pub struct TuneOutputs {
-    /// The switch; report and picture go beside it.
-    pub switch: PathBuf,
-    /// Whether the curve is drawn.
-    pub figures: bool,
-    /// Whether the report is written, with its times and the files' places.
-    pub report: bool,
-}
 
 /// Chooses a switch's thresholds; every result is in its place when it returns.
 ///
@@ -41,12 +29,12 @@ pub struct TuneOutputs {
 pub fn tune_switch(
     inputs: &SwitchInputs,
     options: &TuneOptions,
-    outputs: &TuneOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<TuneReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let TuneOutputs { switch: out, figures, report } = outputs;
+    let Outputs { out, figures, report, .. } = outputs;
     let report_at = report.then(|| beside(out, ".run.json"));
     let mut places = Places::not_over(inputs.recordings.iter().map(|file| &file.path).chain(&inputs.models));
     places.check(std::iter::once(out).chain(&report_at))?;
@@ -69,7 +57,7 @@ pub fn tune_switch(
         warnings,
         notes,
         failed,
-        left_out: left_out(tune_plan(inputs.recordings.len(), *figures)),
+        left_out: left_out(tune_plan(inputs.recordings.len(), Some(outputs))),
         ..Report::new(
             "switch tune",
             watch,
@@ -106,12 +94,12 @@ pub fn tune_switch(
 
 /// What would be done and what not.
 #[must_use]
-pub fn tune_plan(recordings: usize, figures: bool) -> Vec<Step> {
+pub fn tune_plan(recordings: usize, outputs: Option<&Outputs>) -> Vec<Step> {
     vec![
         Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
         Step::new("choose", true, "thresholds and holds".to_owned()),
         Step::new("held out", recordings > 1, "each recording judged by what the others choose".to_owned()),
-        Step::new("figures", figures, if figures { "delay against false switches" } else { "--no-figures" }.to_owned()),
+        Outputs::figures_step(outputs, "delay against false switches"),
     ]
 }
 

@@ -22,11 +22,10 @@ use crate::photograph::is_picture;
 use crate::stages::Step;
 
 const OUTLINES: &str = "outlines";
-const PICTURES: &str = "pictures";
 const FIGURES: &str = "figures";
 
 fn outputs(folder: &Path, demand: &Demand) -> Outputs {
-    let results = Results::Sums { pictures: demand.wants(PICTURES) };
+    let results = Results::Sums { pictures: demand.draws() };
     Outputs { folder: folder.to_owned(), results, outlines: None }
 }
 
@@ -59,7 +58,7 @@ impl Job for PhotosOptions {
                         <photo>.json, else detection",
             ),
         ],
-        &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::if_wanted(PICTURES, "normalized")],
+        &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::pictures("normalized")],
     )
     .revision(15);
 

@@ -22,7 +22,6 @@ use crate::stages::Step;
 
 const TRACKS: &str = "tracks";
 const OVERLAY: &str = "overlay";
-const PICTURES: &str = "pictures";
 
 /// A stage of a pipeline.
 #[derive(Debug, Clone, Args)]
@@ -63,7 +62,7 @@ impl PostureJob {
             joints: folder.join(tables.named("joints.csv", "joints.parquet")),
             tracks: demand.wants(TRACKS).then(|| folder.join(tables.named("tracks.csv", "tracks.parquet"))),
             overlay: demand.wants(OVERLAY).then(|| folder.join("overlay.mp4")),
-            figures: demand.wants(PICTURES),
+            figures: demand.draws(),
             report: false,
         }
     }
@@ -85,13 +84,13 @@ impl Job for PostureJob {
             Part::new("joints", "joints.csv"),
             Part::if_wanted(TRACKS, "tracks.csv"),
             Part::if_wanted(OVERLAY, "overlay.mp4"),
-            Part::if_wanted(PICTURES, "joints-angles.png"),
+            Part::pictures("joints-angles.png"),
         ],
     )
     .revision(7);
 
     fn depends_on(&self, _said: &Said, demand: &Demand) -> serde_json::Value {
-        let made: Vec<&str> = [TRACKS, OVERLAY, PICTURES].into_iter().filter(|part| demand.wants(part)).collect();
+        let made: Vec<&str> = [TRACKS, OVERLAY, "pictures"].into_iter().filter(|part| demand.wants(part)).collect();
         let options = self.options(demand, 1);
         json!({
             "joints": options.joints,

@@ -1,6 +1,7 @@
 //! Eigennails from tables of cells to predictions, and what splits say of them.
 
 use super::*;
+use crate::job::Outputs;
 
 const SIDE: usize = 6;
 const ROWS: usize = 150;
@@ -94,7 +95,7 @@ fn cells_are_trained_on_evaluated_and_predicted() {
         // Measured 0.013 to 0.02 N, and 0.09 of a process off the paths that it has seen; forces have SDs of 0.6 N.
         let rmse = |merit: &Merit| merit.rmse.0.iter().fold(0.0, |most: f64, (_, rmse)| most.max(*rmse));
         assert!(rmse(report.validation.as_ref().unwrap()) < 0.15, "{on_scores:?} {:?}", report.validation);
-        let out = FolderOutputs::all(folder.path(&format!("out-{on_scores:?}")));
+        let out = Outputs::all(folder.path(&format!("out-{on_scores:?}")));
         let data = DataFile::of(&[held.clone(), rod.clone()]);
         let found = evaluate(&model, &data, &EvaluateOptions::default(), Some(&out), &Watch::nobody()).unwrap();
         assert_eq!(found.merit.rows, 2 * ROWS, "rows that lack cells are predicted");
@@ -104,7 +105,7 @@ fn cells_are_trained_on_evaluated_and_predicted() {
             found.within_own
         );
         for name in ["eigennails.png", "eigennails.svg", "scatter.png"] {
-            assert!(out.folder.join(name).metadata().unwrap().len() > 500, "{name}");
+            assert!(out.out.join(name).metadata().unwrap().len() > 500, "{name}");
         }
         let predicted = folder.path("predicted.csv");
         let gate = Gate::new(0.5, 0.0, 0.0).unwrap();
@@ -129,7 +130,7 @@ fn labels_of_another_recording_are_named_and_repeated_paths_too() {
     let folder = Folder::new();
     let others: Vec<PathBuf> = (0..6).map(|k| folder.cells(&format!("o{k}.csv"), 10 + k, 40 + k, false)).collect();
     let (model, _) = folder.nails(&others.iter().collect::<Vec<_>>(), &[], OnScores::Ridge).unwrap();
-    let out = FolderOutputs::all(folder.path("out"));
+    let out = Outputs::all(folder.path("out"));
     let found = evaluate(&model, &DataFile::of(&others), &beside(), Some(&out), &Watch::nobody()).unwrap();
     let splits = found.splits.as_ref().unwrap();
     let path = splits.ways.iter().find(|split| split.by == By::Path).unwrap();
@@ -142,12 +143,12 @@ fn labels_of_another_recording_are_named_and_repeated_paths_too() {
     let leak = found.warnings.iter().filter(|warning| warning.contains("rows of one recording on both sides leak"));
     assert_eq!(leak.count(), 3, "{:?}", found.warnings);
     assert!(found.notes[0].starts_with("Fx_N: shuffled rows flatter, times: nearest row"), "{:?}", found.notes);
-    let table = std::fs::read_to_string(out.folder.join("splits.csv")).unwrap();
+    let table = std::fs::read_to_string(out.out.join("splits.csv")).unwrap();
     assert!(
         table
             .starts_with("by,parts,method,target,rows,rmse,rmse_low,rmse_high,beats_mean,fault\nrows,5,mean,Fx_N,900,")
     );
-    assert!(out.folder.join("splits.png").is_file() && out.folder.join("splits.svg").is_file());
+    assert!(out.out.join("splits.png").is_file() && out.out.join("splits.svg").is_file());
     // The same path twice, with other colours' noise.
     let [a, again] = ["a.csv", "again.csv"].map(|name| folder.cells(name, 1, 1, name == "again.csv"));
     let b = folder.cells("b.csv", 2, 2, false);

@@ -10,9 +10,9 @@ use super::check::faults;
 use super::cone::draw_cone;
 use super::motion::Motion;
 use super::report::{ForceFigures, PostureFigures, TrajectoryFigures, TrajectoryReport};
-use super::{Kind, TrajectoryOptions, TrajectoryOutputs, figures};
+use super::{Kind, TrajectoryOptions, figures};
 use crate::files::{Places, WriteError, beside};
-use crate::job::{Interrupted, Report, Watch};
+use crate::job::{Interrupted, Outputs, Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableError, TableFormat, TableWriter, Value};
 
@@ -42,7 +42,7 @@ pub enum TrajectoryError {
 ///
 /// # Errors
 /// [`TrajectoryError::Options`].
-pub fn plan(options: &TrajectoryOptions, outputs: Option<&TrajectoryOutputs>) -> Result<Vec<Step>, TrajectoryError> {
+pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Vec<Step>, TrajectoryError> {
     let faults = faults(options);
     if !faults.is_empty() {
         return Err(TrajectoryError::Options(faults));
@@ -75,13 +75,13 @@ pub fn plan(options: &TrajectoryOptions, outputs: Option<&TrajectoryOutputs>) ->
 /// [`TrajectoryError`] where there are no results.
 pub fn run(
     options: &TrajectoryOptions,
-    outputs: &TrajectoryOutputs,
+    outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<TrajectoryReport, TrajectoryError> {
     let start = Instant::now();
     let stages = Stages::default();
     let steps = plan(options, Some(outputs))?;
-    TableFormat::of(&outputs.table)?;
+    TableFormat::of(&outputs.out)?;
     let motion = Motion::new(options)?;
     let (force, posture) = stages.time("figures of merit", || match &motion {
         Motion::Force(motion) => (Some(ForceFigures::new(options, motion)), None),
@@ -90,16 +90,16 @@ pub fn run(
     watch.go_on()?;
     let mut places = Places::default();
     let rows = options.rows() as usize;
-    stages.time("table", || write_table(options, &motion, rows, &outputs.table, &mut places, watch))?;
+    stages.time("table", || write_table(options, &motion, rows, &outputs.out, &mut places, watch))?;
     let pictures = stages.time("pictures", || {
-        if outputs.figures { draw(options, &motion, &outputs.table, &mut places) } else { Ok(Vec::new()) }
+        if outputs.figures { draw(options, &motion, &outputs.out, &mut places) } else { Ok(Vec::new()) }
     })?;
     watch.go_on()?;
     let mut warnings = force.as_ref().map_or_else(Vec::new, |force| force.warnings(options));
     warnings.extend(between_rows(options, &motion, rows));
     let figures = TrajectoryFigures {
         trajectory: *options,
-        table: outputs.table.clone(),
+        table: outputs.out.clone(),
         rows: rows as u64,
         span_s: (rows - 1) as f64 * options.every_s,
         force,
@@ -107,7 +107,7 @@ pub fn run(
     };
     let left_out = left_out(steps);
     let report = Report { left_out, warnings, pictures, ..Report::new("trajectory", watch, figures) };
-    let at = outputs.report.then(|| beside(&outputs.table, ".run.json"));
+    let at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
     Ok(report.timed(&stages, start).commit(places, at.as_deref())?)
 }
 

@@ -2,23 +2,17 @@
 //!
 //! The key `kind` is the command's word, and says which options the others are.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::job::{plan, run};
-use super::{BendingOptions, ForceOptions, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs};
+use super::{BendingOptions, ForceOptions, KindOptions, RandomOptions, TrajectoryOptions};
 use crate::job::{
     Demand, Facts, Foreseen, Given, Job, Kind, Made, OptionFault, Order, Part, Prepared, Work, keys, prepared, read,
 };
 use crate::stages::Step;
 
-const PICTURES: &str = "pictures";
 const TABLE: &str = "trajectory.csv";
 const KIND: &str = "kind";
-
-fn outputs(folder: &Path, demand: &Demand) -> TrajectoryOutputs {
-    TrajectoryOutputs { table: folder.join(TABLE), figures: demand.wants(PICTURES), report: false }
-}
 
 /// The keys of all kinds.
 fn all_keys() -> Vec<String> {
@@ -58,7 +52,7 @@ impl Job for TrajectoryOptions {
     const KIND: Kind = Kind {
         name: "trajectory",
         roles: &[],
-        parts: &[Part::new("trajectory", TABLE), Part::if_wanted(PICTURES, "")],
+        parts: &[Part::new("trajectory", TABLE), Part::pictures("")],
         revision: 1,
         keys: all_keys,
         prepare,
@@ -70,7 +64,7 @@ impl Job for TrajectoryOptions {
     }
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        plan(self, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
+        plan(self, Some(&demand.outputs(TABLE))).map_err(|why| why.to_string())
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
@@ -82,7 +76,7 @@ impl Job for TrajectoryOptions {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        let outputs = outputs(work.folder, order.demand);
+        let outputs = order.demand.outputs(work.folder.join(TABLE));
         let report = work.run(order.said, |watch| run(self, &outputs, watch))?;
         Ok(report.made(Vec::new()))
     }

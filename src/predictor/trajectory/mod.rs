@@ -15,7 +15,5 @@ mod options;
 mod report;
 
 pub use job::{TrajectoryError, plan, run};
-pub use options::{
-    BendingOptions, ForceOptions, Kind, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs,
-};
+pub use options::{BendingOptions, ForceOptions, Kind, KindOptions, RandomOptions, TrajectoryOptions};
 pub use report::{ForceFigures, PostureFigures, SpiralFigures, TrajectoryFigures, TrajectoryReport};

@@ -1,7 +1,5 @@
 //! Which trajectory: the options of the three kinds, on the command line and in pipelines, and what follows from them.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use lunula_predictor::{Bending, ForceSpace, Spiral};
 use serde::Serialize;
@@ -247,15 +245,4 @@ impl KindOptions for RandomOptions {
         let kind = Kind::Random { hz: self.hz, seed: self.seed };
         self.cone.of(self.timing.options(kind, self.seconds))
     }
-}
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct TrajectoryOutputs {
-    /// The table; report and pictures go beside it, named after it.
-    pub table: PathBuf,
-    /// Whether pictures are drawn.
-    pub figures: bool,
-    /// Whether the report is written beside the table.
-    pub report: bool,
 }

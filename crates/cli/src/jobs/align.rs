@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use clap::Args;
 use lunula::align::{AlignFigures, AlignInputs, AlignOptions, AlignOutputs, AlignReport, plan, run};
 use lunula::job::{Given, Said, Watch};
@@ -60,6 +60,18 @@ impl AlignArgs {
         ensure!(task.is_none() || bids.is_some(), "--task names the files of a BIDS dataset: give --bids too");
         Ok(AlignInputs { joints: self.joints.clone(), log: self.log.clone(), tracks: self.tracks.clone() })
     }
+}
+
+impl Command for AlignArgs {
+    type Figures = AlignFigures;
+
+    type Outputs = AlignOutputs;
+
+    const NAME: &'static str = "align";
+
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
+    }
 
     fn outputs(&self) -> Option<AlignOutputs> {
         Some(AlignOutputs {
@@ -71,24 +83,13 @@ impl AlignArgs {
             report: true,
         })
     }
-}
 
-impl Command for AlignArgs {
-    type Figures = AlignFigures;
-
-    const NAME: &'static str = "align";
-
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs()?, &self.given.options, outputs)?.into())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs()?, &self.given.options, self.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.inputs()?, &self.given.options, &outputs, watch)?)
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
+        Ok(run(&self.inputs()?, &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &AlignReport) {
@@ -112,9 +113,5 @@ impl Command for AlignArgs {
             "without: {} before the video, {} after it, {} in gaps",
             rows.before_the_video, rows.after_the_video, rows.in_gaps
         ));
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

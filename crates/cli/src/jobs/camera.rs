@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
-use lunula::camera::{CameraFigures, CameraOptions, CameraReport, Inputs, Outputs, plan, run};
-use lunula::job::{Given, Said, Watch};
+use lunula::camera::{CameraFigures, CameraOptions, CameraReport, Inputs, plan, run};
+use lunula::job::{Given, Outputs, Said, Watch};
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -45,30 +44,31 @@ impl CameraArgs {
     fn options(&self) -> CameraOptions {
         CameraOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
     }
-
-    fn outputs(&self) -> Option<Outputs> {
-        Some(Outputs { camera: self.out.clone()?, figures: !self.no_figures, report: true })
-    }
 }
 
 impl Command for CameraArgs {
     type Figures = CameraFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "camera";
 
     const UNIT: &'static str = "files";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs(), &self.options(), self.outputs().as_ref())?.into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CameraReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.inputs(), &self.options(), &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs(), &self.options(), outputs)?.into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<CameraReport> {
+        Ok(run(&self.inputs(), &self.options(), outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &CameraReport) {
@@ -102,9 +102,5 @@ impl Command for CameraArgs {
                 plane.tilt_deg, plane.normal_sd_deg
             ));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

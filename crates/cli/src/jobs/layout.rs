@@ -2,12 +2,9 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
-use lunula::layout::{
-    LayoutFigures, LayoutInput, LayoutInputs, LayoutOptions, LayoutOutputs, LayoutReport, Method, plan, run,
-};
+use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::layout::{LayoutFigures, LayoutInput, LayoutInputs, LayoutOptions, LayoutReport, Method, plan, run};
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -45,30 +42,31 @@ impl LayoutArgs {
             positions: self.positions.clone(),
         }
     }
-
-    fn outputs(&self) -> Option<LayoutOutputs> {
-        Some(LayoutOutputs { folder: self.out.clone()?, figures: !self.no_figures, report: true })
-    }
 }
 
 impl Command for LayoutArgs {
     type Figures = LayoutFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "layout";
 
     const UNIT: &'static str = "numbers of photodiodes";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs(), &self.given.options, self.outputs().as_ref()).into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<LayoutReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.inputs(), &self.given.options, &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs(), &self.given.options, outputs).into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<LayoutReport> {
+        Ok(run(&self.inputs(), &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &LayoutReport) {
@@ -96,9 +94,5 @@ impl Command for LayoutArgs {
             common.say(line.trim_end());
         }
         common.say(&format!("chosen: {} photodiodes ({})", report.chosen.k, report.chosen.why));
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

@@ -14,6 +14,7 @@ pub(crate) mod trajectory;
 
 use std::path::PathBuf;
 
+use anyhow::Context;
 use clap::Args;
 use lunula::job::{Report, Said, Watch};
 use lunula::stages::{Fate, Step};
@@ -51,41 +52,49 @@ pub(super) trait Command {
     /// The figures of its report.
     type Figures: Serialize;
 
+    /// Where its results go.
+    type Outputs;
+
     /// The job's name, as plans give it.
     const NAME: &'static str;
 
     /// What is counted while it runs: `frames`.
     const UNIT: &'static str = "steps";
 
-    /// What every job takes, and the options as they were written.
-    fn given(&self) -> (&JobArgs, &Said);
+    /// What every job takes, the options as they were written, and --out.
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>);
 
-    fn plan(&self) -> anyhow::Result<Plan>;
+    /// Where results go; of a plan, nothing need be said of it.
+    fn outputs(&self) -> Option<Self::Outputs>;
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<Report<Self::Figures>>;
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan>;
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<Report<Self::Figures>>;
 
     /// The figures in words.
     fn say(&self, common: &Common, report: &Report<Self::Figures>);
 
     /// Where to look if there is no picture.
     fn result(&self) -> Option<PathBuf> {
-        None
+        self.given().2.cloned()
     }
 }
 
 /// Plans or runs a job, and prints its report.
 pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
-    let (JobArgs { plan, common }, said) = command.given();
+    let (JobArgs { plan, common }, said, _) = command.given();
     let stop = common.start()?;
+    let outputs = command.outputs();
     if *plan {
-        return show(common, C::NAME, &command.plan()?);
+        return show(common, C::NAME, &command.plan(outputs.as_ref())?);
     }
+    let outputs = outputs.context("--out is needed: where the results go")?;
     let bar = common.progress(0, C::UNIT);
     let tick = |done: u64, all: Option<u64>| {
         bar.set_length(all.unwrap_or(done));
         bar.set_position(done);
     };
-    let report = command.run(&Watch { said, stop: &stop, tick: &tick });
+    let report = command.run(&outputs, &Watch { said, stop: &stop, tick: &tick });
     bar.finish_and_clear();
     let report = report?;
     name_failures(&report.failed);

@@ -65,6 +65,20 @@ impl NailVideoArgs {
     fn options(&self) -> NailVideoOptions {
         NailVideoOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
     }
+}
+
+impl Command for NailVideoArgs {
+    type Figures = NailVideoFigures;
+
+    type Outputs = Outputs;
+
+    const NAME: &'static str = "nailvideo";
+
+    const UNIT: &'static str = "frames";
+
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
+    }
 
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
@@ -75,26 +89,13 @@ impl NailVideoArgs {
             ending: if self.parquet { "parquet" } else { "csv" },
         })
     }
-}
 
-impl Command for NailVideoArgs {
-    type Figures = NailVideoFigures;
-
-    const NAME: &'static str = "nailvideo";
-
-    const UNIT: &'static str = "frames";
-
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs()?, &self.options(), outputs)?.into())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs()?, &self.options(), self.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<NailVideoReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.inputs()?, &self.options(), &outputs, watch)?)
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<NailVideoReport> {
+        Ok(run(&self.inputs()?, &self.options(), outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &NailVideoReport) {
@@ -122,9 +123,5 @@ impl Command for NailVideoArgs {
             common.say(&format!("{count:>5} courses {status}"));
         }
         common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

@@ -77,6 +77,20 @@ impl PostureArgs {
     fn options(&self) -> PostureOptions {
         PostureOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
     }
+}
+
+impl Command for PostureArgs {
+    type Figures = PostureFigures;
+
+    type Outputs = Outputs;
+
+    const UNIT: &'static str = "frames";
+
+    const NAME: &'static str = "posture";
+
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
+    }
 
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
@@ -87,26 +101,13 @@ impl PostureArgs {
             report: true,
         })
     }
-}
 
-impl Command for PostureArgs {
-    type Figures = PostureFigures;
-
-    const UNIT: &'static str = "frames";
-
-    const NAME: &'static str = "posture";
-
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(&self.video, &self.layout()?, &self.options(), outputs)?.into())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.video, &self.layout()?, &self.options(), self.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.video, &self.layout()?, &self.options(), &outputs, watch)?)
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
+        Ok(run(&self.video, &self.layout()?, &self.options(), outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PostureReport) {
@@ -140,9 +141,5 @@ impl Command for PostureArgs {
             common.say(&format!("clock    read in {} of {} frames, {tie}", clock.frames_read, report.frames.all));
         }
         common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

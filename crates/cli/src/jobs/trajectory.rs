@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::predictor::trajectory::{
     BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryFigures,
-    TrajectoryOutputs, TrajectoryReport, plan, run as run_trajectory,
+    TrajectoryReport, plan, run as run_trajectory,
 };
 
 use crate::jobs::{self, Command, JobArgs, Plan};
@@ -56,28 +55,27 @@ pub(crate) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
     }
 }
 
-impl<K: KindOptions> KindArgs<K> {
-    fn outputs(&self) -> Option<TrajectoryOutputs> {
-        Some(TrajectoryOutputs { table: self.out.clone()?, figures: !self.no_figures, report: true })
-    }
-}
-
 impl<K: KindOptions> Command for KindArgs<K> {
     type Figures = TrajectoryFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "trajectory";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.given.options.options(), self.outputs().as_ref())?.into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run_trajectory(&self.given.options.options(), &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(&self.given.options.options(), outputs)?.into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
+        Ok(run_trajectory(&self.given.options.options(), outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TrajectoryReport) {
@@ -96,10 +94,6 @@ impl<K: KindOptions> Command for KindArgs<K> {
                 report.trajectory.tau_s
             ));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }
 

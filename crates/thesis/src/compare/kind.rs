@@ -4,17 +4,15 @@
 //! person who lacks one is left out and reported.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::options::CompareChoices;
 use super::{Person, compare, compare_plan};
 use lunula::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use lunula::log::{LogReading, ReadingCost, ambient_step};
-use lunula::predictor::FolderOutputs;
 use lunula::stages::Step;
 
 const SUBJECT: &str = "subject";
-const PICTURES: &str = "pictures";
 
 impl Job for CompareChoices {
     const KIND: Kind = Kind::of::<Self>(
@@ -27,7 +25,7 @@ impl Job for CompareChoices {
             Role::new("bending", Takes::Many, "bending, with J2"),
             Role::new("bending_random", Takes::Many, "random bending, with J2"),
         ],
-        &[Part::new("table", "comparisons.csv"), Part::if_wanted(PICTURES, "")],
+        &[Part::new("table", "comparisons.csv"), Part::pictures("")],
     );
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
@@ -38,7 +36,7 @@ impl Job for CompareChoices {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let people: BTreeSet<_> = inputs.iter().filter_map(|input| input.keys.get(SUBJECT)).collect();
-        let out = outputs(Path::new(""), demand);
+        let out = demand.outputs("");
         let mut steps = compare_plan(people.len(), &self.options(), Some(&out));
         let roles: Vec<&str> = Self::KIND.roles.iter().map(|role| role.name).collect();
         steps.insert(1, ambient_step(inputs, &roles, &LogReading::default()));
@@ -65,17 +63,12 @@ impl Job for CompareChoices {
             "no recording has the key `{SUBJECT}`, which says whose it is"
         );
         anyhow::ensure!(!people.is_empty(), "nobody has all six recordings: {}", failed.join("; "));
-        let out = outputs(work.folder, order.demand);
+        let out = order.demand.outputs(work.folder);
         let options = self.options();
         let mut report = work.run(order.said, |watch| compare(&people, &options, Some(&out), watch))?;
         report.failed = failed;
         Ok(report.made(Vec::new()))
     }
-}
-
-/// Which of the results, in a folder.
-fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
-    FolderOutputs { folder: folder.to_owned(), rows: false, figures: demand.wants(PICTURES), report: false }
 }
 
 /// One person's recordings; else what is wrong with them.

@@ -22,8 +22,8 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 pub(crate) use halves::HalvesJob;
-use lunula::job::{Report, Watch};
-use lunula::predictor::{FolderOutputs, PredictorError, end};
+use lunula::job::{Outputs, Report, Watch};
+use lunula::predictor::{PredictorError, end};
 use lunula::stages::{Stages, Step, left_out};
 use measure::measure;
 pub(crate) use measure::rmse;
@@ -40,7 +40,7 @@ pub use report::{CompareFigures, CompareReport};
 pub fn compare(
     people: &[Person],
     options: &CompareOptions,
-    out: Option<&FolderOutputs>,
+    out: Option<&Outputs>,
     watch: &Watch<'_>,
 ) -> Result<CompareReport, PredictorError> {
     let start = Instant::now();
@@ -65,13 +65,13 @@ pub fn compare(
 
 /// What would be done and what not, of so many people.
 #[must_use]
-pub fn compare_plan(people: usize, options: &CompareOptions, out: Option<&FolderOutputs>) -> Vec<Step> {
+pub fn compare_plan(people: usize, options: &CompareOptions, out: Option<&Outputs>) -> Vec<Step> {
     let models = options.models.len();
     vec![
         Step::new("read", true, format!("6 files of each of {people} people")),
         Step::new("fit", true, format!("{models} models of touch by 3 sets, {models} of posture, of each")),
         Step::new("subsets", true, "the linear model of each, of each".to_owned()),
-        FolderOutputs::table_step(out, "comparisons"),
-        FolderOutputs::figures_step(out, "Fig. 105 to 113"),
+        Outputs::table_step(out, "comparisons"),
+        Outputs::figures_step(out, "Fig. 105 to 113"),
     ]
 }

@@ -3,17 +3,14 @@
 use crate::compare::comparison::Comparison;
 use crate::compare::report::CompareReport;
 use lunula::files::Staging;
-use lunula::predictor::{BarSeries, Bars, FolderOutputs, PredictorError, draw_bars, picture};
+use lunula::job::Outputs;
+use lunula::predictor::{BarSeries, Bars, PredictorError, draw_bars, picture};
 use lunula::stages::Stages;
 use lunula::table::{Column, TableWriter, Value};
 
 /// `comparisons.csv` and Fig. 105-113.
-pub(super) fn write(
-    report: &mut CompareReport,
-    out: &FolderOutputs,
-    stages: &Stages,
-) -> Result<Staging, PredictorError> {
-    let folder = &out.folder;
+pub(super) fn write(report: &mut CompareReport, out: &Outputs, stages: &Stages) -> Result<Staging, PredictorError> {
+    let folder = &out.out;
     let staging = Staging::new(folder)?;
     let name = "comparisons.csv";
     let mut columns = ["figure", "group", "series", "unit"].map(Column::text).to_vec();

@@ -15,10 +15,9 @@ use crate::responses::{NamedFile, ResponsesOptions, responses};
 use crate::section::presses::{PressFile, read_presses};
 use crate::section::{section_presses, section_simulations};
 use lunula::hemodynamics::Pressed;
-use lunula::job::{defaults, read};
+use lunula::job::{Outputs, defaults, read};
 use lunula::live::performance::{self, PerformanceOptions};
 use lunula::phantom::nail::Pose;
-use lunula::predictor::FolderOutputs;
 
 fn part(at: &Path, part: Part, subject: &str, files: &[(&str, &[u8])]) -> PartFolder {
     let folder = at.join(part.name()).join(subject);
@@ -194,7 +193,7 @@ fn every_quantity_of_the_statements_is_computed() {
                 fs::write(at.join("trials.csv"), trials(1)).unwrap();
                 let course = "path_m = 1.42\nspeed_mps = 0.025\ndecisions = 27".parse().unwrap();
                 let options = read::<PerformanceOptions>(&course, "").unwrap().options;
-                let outputs = FolderOutputs { folder: folder.clone(), rows: false, figures: false, report: false };
+                let outputs = Outputs { out: folder.clone(), rows: false, figures: false, report: false };
                 performance::run(&at.join("trials.csv"), "trials.csv", &options, &outputs, &Watch::nobody()).unwrap();
             }
             Part::Section => write(section_simulations(folder).unwrap().numbers),

@@ -11,11 +11,11 @@ use std::time::Instant;
 
 use lunula_predictor::{Model, Modes, Predictor, linear_f0, modes, quadratic_printed, quadratic_terms};
 
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::predictor::error::PredictorError;
 use crate::predictor::merit::figures::ByTarget;
 use crate::predictor::open_models;
-use crate::predictor::outputs::{FolderOutputs, end};
+use crate::predictor::outputs::end;
 use crate::stages::{Stages, Step, left_out};
 pub use report::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed};
 
@@ -23,7 +23,7 @@ pub use report::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed};
 ///
 /// # Errors
 /// [`PredictorError`] where there is nothing to tell.
-pub fn analyse(model: &Path, out: Option<&FolderOutputs>, watch: &Watch<'_>) -> Result<AnalyseReport, PredictorError> {
+pub fn analyse(model: &Path, out: Option<&Outputs>, watch: &Watch<'_>) -> Result<AnalyseReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
     let mut notes = Vec::new();
@@ -91,12 +91,12 @@ fn refuse_lost(predictor: &Predictor, jacobian: &ndarray::Array2<f64>, model: &P
 
 /// What would be done and what not.
 #[must_use]
-pub fn analyse_plan(out: Option<&FolderOutputs>) -> Vec<Step> {
+pub fn analyse_plan(out: Option<&Outputs>) -> Vec<Step> {
     vec![
         Step::new("jacobian", true, "of the model".to_owned()),
         Step::new("modes", true, "its singular values".to_owned()),
-        FolderOutputs::table_step(out, "modes"),
-        FolderOutputs::figures_step(out, "modes (Fig. 98)"),
+        Outputs::table_step(out, "modes"),
+        Outputs::figures_step(out, "modes (Fig. 98)"),
     ]
 }
 

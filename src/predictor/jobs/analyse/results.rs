@@ -5,20 +5,17 @@ use std::path::{Path, PathBuf};
 use ndarray::Array2;
 
 use crate::files::Staging;
+use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{Modes, draw_modes};
 use crate::predictor::jobs::analyse::report::{AnalyseReport, ModelMode};
-use crate::predictor::outputs::{FolderOutputs, picture};
+use crate::predictor::outputs::picture;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
 /// `modes.csv` and Fig. 98.
-pub(super) fn write(
-    report: &mut AnalyseReport,
-    out: &FolderOutputs,
-    stages: &Stages,
-) -> Result<Staging, PredictorError> {
-    let folder = &out.folder;
+pub(super) fn write(report: &mut AnalyseReport, out: &Outputs, stages: &Stages) -> Result<Staging, PredictorError> {
+    let folder = &out.out;
     let staging = Staging::new(folder)?;
     let modes = &report.modes.modes;
     let names: Vec<&String> = report.targets.iter().chain(&report.inputs).collect();

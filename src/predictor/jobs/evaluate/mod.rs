@@ -19,13 +19,13 @@ use lunula_predictor::{
 };
 use ndarray::{Array2, Axis};
 
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::predictor::data::{DataFile, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::merit::doubts::{doubts, outside_cone};
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::options::choices::LEVEL;
-use crate::predictor::outputs::{FolderOutputs, end};
+use crate::predictor::outputs::end;
 use crate::predictor::{open_models, seen_by_intervals, seen_in_training};
 use crate::stages::{Stages, Step, left_out};
 use report::Predicted;
@@ -68,7 +68,7 @@ pub fn evaluate(
     model: &Path,
     data: &[DataFile],
     options: &EvaluateOptions,
-    out: Option<&FolderOutputs>,
+    out: Option<&Outputs>,
     watch: &Watch<'_>,
 ) -> Result<EvaluateReport, PredictorError> {
     let start = Instant::now();
@@ -267,7 +267,7 @@ pub fn evaluate_plan(
     ambient: Step,
     options: &EvaluateOptions,
     intervals: Option<bool>,
-    out: Option<&FolderOutputs>,
+    out: Option<&Outputs>,
 ) -> Vec<Step> {
     let covered = match intervals {
         Some(false) => "the model has none (train it with --validate)",
@@ -300,8 +300,8 @@ pub fn evaluate_plan(
             if options.splits.is_some() { "by rows, trajectory, path, session, subject" } else { "no --splits" }
                 .to_owned(),
         ),
-        FolderOutputs::table_step(out, "errors"),
+        Outputs::table_step(out, "errors"),
         Step::new("predicted rows", rows, why.to_owned()),
-        FolderOutputs::figures_step(out, "predicted and measured over time, as scatter, errors by size"),
+        Outputs::figures_step(out, "predicted and measured over time, as scatter, errors by size"),
     ]
 }

@@ -6,6 +6,7 @@ use lunula_predictor::Eigennails;
 use ndarray::Array2;
 
 use crate::files::Staging;
+use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{
     self, BarSeries, Bars, MagnitudeBin, draw_bar_charts, draw_bars, draw_error_by_magnitude, draw_nails,
@@ -14,7 +15,7 @@ use crate::predictor::figures::{
 use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted, Splits};
 use crate::predictor::jobs::evaluate::splits::way;
 use crate::predictor::merit::table::{MERIT, MeritRows, merit_table};
-use crate::predictor::outputs::{FolderOutputs, picture};
+use crate::predictor::outputs::picture;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -23,10 +24,10 @@ pub(super) fn write(
     report: &mut EvaluateReport,
     shown: &Predicted,
     eigennails: Option<&Eigennails>,
-    out: &FolderOutputs,
+    out: &Outputs,
     stages: &Stages,
 ) -> Result<Staging, PredictorError> {
-    let folder = &out.folder;
+    let folder = &out.out;
     let staging = Staging::new(folder)?;
     let merit = staging.place(MERIT)?;
     stages.time("write", || merit_table(&merit, &folder.join(MERIT), &evaluated(report)))?;

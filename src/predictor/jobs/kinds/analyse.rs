@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use crate::predictor::jobs::analyse::{analyse, analyse_plan};
-use crate::predictor::jobs::kinds::{PICTURES, outputs};
+use crate::predictor::jobs::kinds::outputs;
 use crate::stages::Step;
 
 /// A stage of a pipeline.
@@ -17,7 +17,7 @@ impl Job for AnalyseJob {
     const KIND: Kind = Kind::of::<Self>(
         "analyse",
         &[Role::new("model", Takes::One, "a model of train")],
-        &[Part::new("modes", "modes.csv"), Part::if_wanted(PICTURES, "")],
+        &[Part::new("modes", "modes.csv"), Part::pictures("")],
     );
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {

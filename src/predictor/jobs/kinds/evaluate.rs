@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::evaluate::{EvaluateOptions, evaluate, evaluate_plan};
-use crate::predictor::jobs::kinds::{PICTURES, ROWS, data_files, measured, outputs};
+use crate::predictor::jobs::kinds::{ROWS, data_files, measured, outputs};
 use crate::predictor::options::choices::ByChoice;
 use crate::predictor::options::commands::EvaluateChoices;
 use crate::stages::Step;
@@ -17,7 +17,7 @@ impl Job for EvaluateChoices {
             Role::new("model", Takes::One, "a model of train"),
             Role::new("data", Takes::Many, "recordings with the model's photodiodes and targets"),
         ],
-        &[Part::new("merit", "merit.csv"), Part::if_wanted(ROWS, "predicted.csv"), Part::if_wanted(PICTURES, "")],
+        &[Part::new("merit", "merit.csv"), Part::if_wanted(ROWS, "predicted.csv"), Part::pictures("")],
     )
     .revision(9);
 

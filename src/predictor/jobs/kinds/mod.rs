@@ -10,21 +10,18 @@ mod train;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::job::{At, Demand, Foreseen, Quality, Work};
+use crate::job::{At, Demand, Foreseen, Outputs, Quality, Work};
 use crate::predictor::data::DataFile;
 use crate::predictor::merit::figures::Merit;
 use crate::predictor::options::target::Target;
-use crate::predictor::outputs::FolderOutputs;
 
 pub use analyse::AnalyseJob;
 
 const ROWS: &str = "predicted";
-const PICTURES: &str = "pictures";
 
 /// Which of the results, in a folder.
-fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
-    let (rows, figures) = (demand.wants(ROWS), demand.wants(PICTURES));
-    FolderOutputs { folder: folder.to_owned(), rows, figures, report: false }
+fn outputs(folder: &Path, demand: &Demand) -> Outputs {
+    Outputs { rows: demand.wants(ROWS), ..demand.outputs(folder) }
 }
 
 /// The recordings of a role as results call them: by the pipeline's name, subject and session by its keys.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
-use crate::predictor::jobs::kinds::{PICTURES, data_files, joints, only_joints, outputs};
+use crate::predictor::jobs::kinds::{data_files, joints, only_joints, outputs};
 use crate::predictor::jobs::prune::{PruneRow, prune, prune_plan};
 use crate::predictor::options::commands::PruneChoices;
 use crate::stages::Step;
@@ -16,7 +16,7 @@ impl Job for PruneChoices {
             Role::new("data", Takes::Many, "recordings to train on"),
             Role::new("validate", Takes::Many, "others to compare on"),
         ],
-        &[Part::new("subsets", "subsets.csv"), Part::if_wanted(PICTURES, "")],
+        &[Part::new("subsets", "subsets.csv"), Part::pictures("")],
     )
     .revision(9);
 

@@ -11,11 +11,11 @@ use std::time::Instant;
 
 use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
 
-use crate::job::{Report, Watch};
+use crate::job::{Outputs, Report, Watch};
 use crate::predictor::data::{DataFile, Wanted, read_files, units};
 use crate::predictor::error::PredictorError;
 use crate::predictor::merit::figures::ByTarget;
-use crate::predictor::outputs::{FolderOutputs, end};
+use crate::predictor::outputs::end;
 use crate::stages::{Stages, Step, left_out};
 pub use report::{PruneFigures, PruneReport, PruneRow};
 
@@ -27,7 +27,7 @@ pub fn prune(
     data: &[DataFile],
     validate: &[DataFile],
     wanted: &Wanted,
-    out: Option<&FolderOutputs>,
+    out: Option<&Outputs>,
     watch: &Watch<'_>,
 ) -> Result<PruneReport, PredictorError> {
     let start = Instant::now();
@@ -108,14 +108,14 @@ fn no_better(figures: &PruneFigures) -> Option<String> {
 /// What would be done and what not; `files`: how many to train and to validate on; `ambient`: their step of
 /// [`DataFile::ambient_step`].
 #[must_use]
-pub fn prune_plan(files: [usize; 2], ambient: Step, out: Option<&FolderOutputs>) -> Vec<Step> {
+pub fn prune_plan(files: [usize; 2], ambient: Step, out: Option<&Outputs>) -> Vec<Step> {
     vec![
         Step::new("read", true, format!("{} files to train on, {} to compare on", files[0], files[1])),
         ambient,
         Step::new("subsets", true, "the linear model of each".to_owned()),
         Step::new("quadratic and network models", false, "a fit of each subset would take hours".to_owned()),
-        FolderOutputs::table_step(out, "subsets"),
-        FolderOutputs::figures_step(out, "without one photodiode, the best of each number"),
+        Outputs::table_step(out, "subsets"),
+        Outputs::figures_step(out, "without one photodiode, the best of each number"),
     ]
 }
 

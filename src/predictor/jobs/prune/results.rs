@@ -1,16 +1,17 @@
 //! `subsets.csv`, Fig. 113 and the best subset of each size.
 
 use crate::files::Staging;
+use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{self, BarSeries, Bars, SubsetSeries, draw_bars, draw_best_subsets};
 use crate::predictor::jobs::prune::report::{PruneReport, PruneRow};
-use crate::predictor::outputs::{FolderOutputs, picture};
+use crate::predictor::outputs::picture;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
 /// `subsets.csv`, Fig. 113 and the best subset of each size.
-pub(super) fn write(report: &mut PruneReport, out: &FolderOutputs, stages: &Stages) -> Result<Staging, PredictorError> {
-    let folder = &out.folder;
+pub(super) fn write(report: &mut PruneReport, out: &Outputs, stages: &Stages) -> Result<Staging, PredictorError> {
+    let folder = &out.out;
     let staging = Staging::new(folder)?;
     let mut columns = vec![Column::integer("photodiodes"), Column::text("inputs"), Column::integer("rank")];
     for kind in ["train", "validate"] {

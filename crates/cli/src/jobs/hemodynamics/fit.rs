@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
-use lunula::hemodynamics::{FitFigures, FitInputs, FitOptions, FitOutputs, FitReport, fit, fit_plan};
-use lunula::job::{Given, Said, Watch};
+use lunula::hemodynamics::{FitFigures, FitInputs, FitOptions, FitReport, fit, fit_plan};
+use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::words::fixed;
 
 use crate::Common;
@@ -78,28 +77,29 @@ impl FitArgs {
             params: self.params.clone(),
         }
     }
-
-    fn outputs(&self) -> Option<FitOutputs> {
-        Some(FitOutputs { result: self.out.clone()?, figures: !self.no_figures, report: true })
-    }
 }
 
 impl Command for FitArgs {
     type Figures = FitFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "fit";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(fit_plan(&self.inputs(), &self.given.options, self.outputs().as_ref())?.into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<FitReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(fit(&self.inputs(), &self.given.options, &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(fit_plan(&self.inputs(), &self.given.options, outputs)?.into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<FitReport> {
+        Ok(fit(&self.inputs(), &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &FitReport) {
@@ -149,9 +149,5 @@ impl Command for FitArgs {
             let noises: Vec<String> = one.photodiodes.iter().zip(&one.noise_v).zip(&one.noise).map(of).collect();
             common.say(&format!("  noise in {}: {}", one.file.display(), noises.join("; ")));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

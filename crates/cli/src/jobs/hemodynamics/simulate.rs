@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, FromArgMatches};
 use lunula::hemodynamics::{
-    CurveFigures, CurveOptions, CurveOutputs, CurveRange, CurveReport, SimulateFigures, SimulateInputs,
-    SimulateOptions, SimulateOutputs, SimulateReport, curve, curve_plan, simulate, simulate_plan,
+    CurveFigures, CurveOptions, CurveRange, CurveReport, SimulateFigures, SimulateInputs, SimulateOptions,
+    SimulateReport, curve, curve_plan, simulate, simulate_plan,
 };
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Outputs, Said, Watch};
 
 use crate::jobs::{self, Command, JobArgs, Plan};
 use crate::{Common, Outcome, print_line};
@@ -137,28 +136,29 @@ impl OverTime<'_> {
     fn inputs(&self) -> SimulateInputs {
         SimulateInputs { params: self.args.params.clone(), loads: self.args.loads.clone() }
     }
-
-    fn outputs(&self) -> Option<SimulateOutputs> {
-        Some(SimulateOutputs { table: self.args.out.clone()?, figures: !self.args.no_figures, report: true })
-    }
 }
 
 impl Command for OverTime<'_> {
     type Figures = SimulateFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "simulate";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.args.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.args.job, &self.given.said, self.args.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(simulate_plan(&self.inputs(), &self.given.options, self.outputs().as_ref())?.into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.args.out.as_ref(), !self.args.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(simulate(&self.inputs(), &self.given.options, &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(simulate_plan(&self.inputs(), &self.given.options, outputs)?.into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
+        Ok(simulate(&self.inputs(), &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &SimulateReport) {
@@ -171,10 +171,6 @@ impl Command for OverTime<'_> {
             work.steps, work.rejected, work.evaluations, work.factorizations, report.stopped
         ));
     }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.args.out.clone()
-    }
 }
 
 struct Static<'a> {
@@ -182,28 +178,27 @@ struct Static<'a> {
     given: &'a Given<CurveOptions>,
 }
 
-impl Static<'_> {
-    fn outputs(&self) -> Option<CurveOutputs> {
-        Some(CurveOutputs { table: self.args.out.clone()?, figures: !self.args.no_figures, report: true })
-    }
-}
-
 impl Command for Static<'_> {
     type Figures = CurveFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "simulate --static";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.args.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.args.job, &self.given.said, self.args.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, self.outputs().as_ref())?.into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.args.out.as_ref(), !self.args.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(curve(self.args.params.as_deref(), &self.given.options, &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, outputs)?.into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
+        Ok(curve(self.args.params.as_deref(), &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &CurveReport) {
@@ -222,9 +217,5 @@ impl Command for Static<'_> {
         for [from, to] in &report.closed_pa {
             common.say(&format!("no equilibrium with open vessels from {from:.6} to {to:.6} Pa"));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.args.out.clone()
     }
 }

@@ -2,13 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::live::performance::{
     Comparison, MethodFigures, PerformanceFigures, PerformanceOptions, PerformanceReport, Statement, plan, run,
 };
-use lunula::predictor::FolderOutputs;
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -49,28 +47,27 @@ pub(crate) struct PerformanceArgs {
     job: JobArgs,
 }
 
-impl PerformanceArgs {
-    fn outputs(&self) -> Option<FolderOutputs> {
-        Some(FolderOutputs { figures: !self.no_figures, ..FolderOutputs::all(self.out.clone()?) })
-    }
-}
-
 impl Command for PerformanceArgs {
     type Figures = PerformanceFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "performance";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(self.outputs().as_ref()).into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PerformanceReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.trials, &self.trials.display().to_string(), &self.given.options, &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(plan(outputs).into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PerformanceReport> {
+        Ok(run(&self.trials, &self.trials.display().to_string(), &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PerformanceReport) {
@@ -83,10 +80,6 @@ impl Command for PerformanceArgs {
         report.methods.iter().for_each(|method| say_method(common, method));
         report.comparisons.iter().for_each(|one| say_comparison(common, one));
         common.say(&report.level);
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }
 

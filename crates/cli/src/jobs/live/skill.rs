@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::live::skill::{
     FingerSpread, SkillFigures, SkillInputs, SkillOptions, SkillRecording, SkillReport, plan, run,
 };
-use lunula::predictor::FolderOutputs;
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -72,33 +71,33 @@ impl SkillArgs {
             reference: self.reference.clone().map(SkillRecording::of),
         })
     }
-
-    fn outputs(&self) -> Option<FolderOutputs> {
-        Some(FolderOutputs { figures: !self.no_figures, ..FolderOutputs::all(self.out.clone()?) })
-    }
 }
 
 impl Command for SkillArgs {
     type Figures = SkillFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "skill";
 
     const UNIT: &'static str = "recordings";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
+    }
+
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
         let inputs = self.inputs()?;
-        let outputs = self.outputs();
         let reference = inputs.reference.is_some();
-        Ok(plan(inputs.recordings.len(), reference, &self.given.options, outputs.as_ref())?.into())
+        Ok(plan(inputs.recordings.len(), reference, &self.given.options, outputs)?.into())
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SkillReport> {
-        let outputs = self.outputs().context("--out is needed")?;
-        Ok(run(&self.inputs()?, &self.given.options, &outputs, watch)?)
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<SkillReport> {
+        Ok(run(&self.inputs()?, &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &SkillReport) {
@@ -116,10 +115,6 @@ impl Command for SkillArgs {
             common.say("mean ± SD over people");
             report.over_people.iter().for_each(|finger| say_finger(common, finger));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }
 

@@ -2,14 +2,13 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::live::{
     ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, SwitchInputs, TuneFigures, TuneOptions,
-    TuneOutputs, TuneReport, evaluate_plan, evaluate_switch, tune_plan, tune_switch,
+    TuneReport, evaluate_plan, evaluate_switch, tune_plan, tune_switch,
 };
-use lunula::predictor::{DataFile, FolderOutputs};
+use lunula::predictor::DataFile;
 
 use crate::jobs::{self, Command, JobArgs, Plan};
 use crate::{Common, Outcome};
@@ -89,22 +88,26 @@ pub(crate) fn run(args: &SwitchArgs) -> anyhow::Result<Outcome> {
 impl Command for TuneArgs {
     type Figures = TuneFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "switch tune";
 
     const UNIT: &'static str = "recordings";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(tune_plan(self.recordings.len(), !self.no_figures).into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
-        let out = self.out.as_ref().context("--out is needed: the switch")?;
-        let outputs = TuneOutputs { switch: out.clone(), figures: !self.no_figures, report: true };
-        Ok(tune_switch(&inputs(&self.recordings, &self.models), &self.given.options, &outputs, watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(tune_plan(self.recordings.len(), outputs).into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
+        Ok(tune_switch(&inputs(&self.recordings, &self.models), &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TuneReport) {
@@ -119,40 +122,36 @@ impl Command for TuneArgs {
             say_evaluation(common, "held out", held_out);
         }
     }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
-    }
 }
 
 impl Command for EvaluateArgs {
     type Figures = EvaluateSwitchFigures;
 
+    type Outputs = Outputs;
+
     const NAME: &'static str = "switch evaluate";
 
     const UNIT: &'static str = "recordings";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(evaluate_plan(self.recordings.len(), true, !self.no_figures).into())
+    fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
-        let out = self.out.as_ref().context("--out is needed: the folder of results")?;
-        let outputs = FolderOutputs { figures: !self.no_figures, ..FolderOutputs::all(out.clone()) };
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(evaluate_plan(self.recordings.len(), outputs).into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
         let inputs = inputs(&self.recordings, &self.models);
-        Ok(evaluate_switch(&self.switch, &inputs, &self.given.options, &outputs, watch)?)
+        Ok(evaluate_switch(&self.switch, &inputs, &self.given.options, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &EvaluateSwitchReport) {
         say_evaluation(common, "on these recordings", &report.all);
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }
 

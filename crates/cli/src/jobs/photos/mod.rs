@@ -76,15 +76,6 @@ impl PhotosArgs {
         Ok(options)
     }
 
-    fn outputs(&self) -> anyhow::Result<Outputs> {
-        let outlines = self.write_outlines.as_ref().map(|folder| match folder {
-            Some(folder) => OutlineHome::Folder(folder.clone()),
-            None => OutlineHome::BesidePhotographs,
-        });
-        let folder = self.out.clone().context("--out is needed")?;
-        Ok(Outputs { folder, results: Results::Maps, outlines })
-    }
-
     fn set(&self) -> anyhow::Result<PhotoSet> {
         let (set, out) = self.set.as_ref().zip(self.out.as_ref()).context("SET and --out are needed")?;
         if PhotoSet::would_take_results(set, out) {
@@ -123,23 +114,33 @@ fn say_poses(common: &Common, report: &PhotosReport) {
 impl Command for PhotosArgs {
     type Figures = PhotosFigures;
 
+    type Outputs = Outputs;
+
     const UNIT: &'static str = "photographs";
 
     const NAME: &'static str = "photos";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
+    fn outputs(&self) -> Option<Outputs> {
+        let outlines = self.write_outlines.as_ref().map(|folder| match folder {
+            Some(folder) => OutlineHome::Folder(folder.clone()),
+            None => OutlineHome::BesidePhotographs,
+        });
+        Some(Outputs { folder: self.out.clone()?, results: Results::Maps, outlines })
+    }
+
+    fn plan(&self, outputs: Option<&Outputs>) -> anyhow::Result<Plan> {
         let (options, set) = (self.options()?, self.set()?);
-        let steps = plan(&set, &options, &self.outputs()?);
+        let steps = plan(&set, &options, outputs.context("--out is needed")?);
         Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+    fn run(&self, outputs: &Outputs, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
         let (options, set) = (self.options()?, self.set()?);
-        let report = run(&set, &options, &self.outputs()?, watch);
+        let report = run(&set, &options, outputs, watch);
         Ok(report.inspect_err(|why| {
             if let PhotosError::NothingUsable { outlines, .. } = why {
                 let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
@@ -153,25 +154,31 @@ impl Command for PhotosArgs {
     }
 
     fn result(&self) -> Option<PathBuf> {
-        Some(self.out.as_ref()?.join("report.html"))
+        self.out.as_ref().map(|out| out.join("report.html"))
     }
 }
 
 impl Command for MergeArgs {
     type Figures = PhotosFigures;
 
+    type Outputs = PathBuf;
+
     const NAME: &'static str = "photos merge";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, Some(&self.out))
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
+    fn outputs(&self) -> Option<PathBuf> {
+        Some(self.out.clone())
+    }
+
+    fn plan(&self, _: Option<&PathBuf>) -> anyhow::Result<Plan> {
         Ok(merge_plan(&self.parts).into())
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
-        Ok(merge(&self.parts, &self.out, watch)?)
+    fn run(&self, out: &PathBuf, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+        Ok(merge(&self.parts, out, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PhotosReport) {

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
-use lunula::predictor::{AnalyseFigures, AnalyseJob, AnalyseReport, FolderOutputs, ModelMode, analyse, analyse_plan};
+use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::predictor::{AnalyseFigures, AnalyseJob, AnalyseReport, ModelMode, analyse, analyse_plan};
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -31,18 +31,24 @@ pub(crate) struct AnalyseArgs {
 impl Command for AnalyseArgs {
     type Figures = AnalyseFigures;
 
+    type Outputs = Option<Outputs>;
+
     const NAME: &'static str = "analyse";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(analyse_plan(self.out.clone().map(FolderOutputs::all).as_ref()).into())
+    fn outputs(&self) -> Option<Self::Outputs> {
+        Some(Outputs::of(self.out.as_ref(), true))
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
-        Ok(analyse(&self.model, self.out.clone().map(FolderOutputs::all).as_ref(), watch)?)
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+        Ok(analyse_plan(outputs.and_then(Option::as_ref)).into())
+    }
+
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
+        Ok(analyse(&self.model, outputs.as_ref(), watch)?)
     }
 
     fn say(&self, common: &Common, report: &AnalyseReport) {

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::predictor::{
-    DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, FolderOutputs, Splits, evaluate, evaluate_plan, way,
+    DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, Splits, evaluate, evaluate_plan, way,
 };
 
 use crate::Common;
@@ -40,23 +40,27 @@ pub(crate) struct EvaluateArgs {
 impl Command for EvaluateArgs {
     type Figures = EvaluateFigures;
 
+    type Outputs = Option<Outputs>;
+
     const NAME: &'static str = "evaluate";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let out = self.out.clone().map(FolderOutputs::all);
+    fn outputs(&self) -> Option<Self::Outputs> {
+        Some(Outputs::of(self.out.as_ref(), true))
+    }
+
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
         let options = self.given.options.options();
         let ambient = DataFile::ambient_step(&DataFile::of(&self.data), &options.rows);
-        Ok(evaluate_plan(self.data.len(), ambient, &options, None, out.as_ref()).into())
+        Ok(evaluate_plan(self.data.len(), ambient, &options, None, outputs.and_then(Option::as_ref)).into())
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
-        let out = self.out.clone().map(FolderOutputs::all);
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
         let options = self.given.options.options();
-        Ok(evaluate(&self.model, &DataFile::of(&self.data), &options, out.as_ref(), watch)?)
+        Ok(evaluate(&self.model, &DataFile::of(&self.data), &options, outputs.as_ref(), watch)?)
     }
 
     fn say(&self, common: &Common, report: &EvaluateReport) {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{bail, ensure};
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::{DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan};
@@ -56,22 +56,27 @@ impl PredictArgs {
 impl Command for PredictArgs {
     type Figures = PredictFigures;
 
+    type Outputs = PathBuf;
+
     const NAME: &'static str = "predict";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
+    fn outputs(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+
+    fn plan(&self, _: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
         let ((data, models), options) = (self.parts()?, self.given.options.options()?);
         let ambient = DataFile::ambient_step([&DataFile::from(data.to_owned())], &options.rows);
         Ok(predict_plan(models.len(), ambient, &options).into())
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
         let (data, models) = self.parts()?;
-        let out = self.out.as_ref().context("--out is needed: the table of predictions")?;
-        Ok(predict(models, data, &self.given.options.options()?, out, watch)?)
+        Ok(predict(models, data, &self.given.options.options()?, outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PredictReport) {
@@ -82,9 +87,5 @@ impl Command for PredictArgs {
         if report.touch + report.bending > 0 {
             common.say(&format!("touch in {} rows, bending in {}", report.touch, report.bending));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }

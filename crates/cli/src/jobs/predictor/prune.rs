@@ -3,10 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
-use lunula::predictor::{
-    DataFile, FolderOutputs, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan,
-};
+use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::predictor::{DataFile, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 
 use crate::Common;
 use crate::jobs::predictor::figure;
@@ -37,23 +35,27 @@ pub(crate) struct PruneArgs {
 impl Command for PruneArgs {
     type Figures = PruneFigures;
 
+    type Outputs = Option<Outputs>;
+
     const NAME: &'static str = "prune";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let out = self.out.clone().map(FolderOutputs::all);
+    fn outputs(&self) -> Option<Self::Outputs> {
+        Some(Outputs::of(self.out.as_ref(), true))
+    }
+
+    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
         let files = [&self.data[..], &self.validate].concat();
         let ambient = DataFile::ambient_step(&DataFile::of(&files), &self.given.options.rows);
-        Ok(prune_plan([self.data.len(), self.validate.len()], ambient, out.as_ref()).into())
+        Ok(prune_plan([self.data.len(), self.validate.len()], ambient, outputs.and_then(Option::as_ref)).into())
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
-        let out = self.out.clone().map(FolderOutputs::all);
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
         let (data, validate) = (DataFile::of(&self.data), DataFile::of(&self.validate));
-        Ok(prune(&data, &validate, &self.given.options.wanted(), out.as_ref(), watch)?)
+        Ok(prune(&data, &validate, &self.given.options.wanted(), outputs.as_ref(), watch)?)
     }
 
     fn say(&self, common: &Common, report: &PruneReport) {

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::models::{EigennailsReport, Report};
@@ -59,22 +58,26 @@ impl TrainArgs {
 impl Command for TrainArgs {
     type Figures = TrainFigures;
 
+    type Outputs = TrainOutputs;
+
     const NAME: &'static str = "train";
 
-    fn given(&self) -> (&JobArgs, &Said) {
-        (&self.job, &self.given.said)
+    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+        (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn plan(&self) -> anyhow::Result<Plan> {
+    fn outputs(&self) -> Option<TrainOutputs> {
+        Some(TrainOutputs { model: self.out.clone()?, learning_curve: self.learning_curve.clone(), merit: None })
+    }
+
+    fn plan(&self, _: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
         let (inputs, options) = (self.inputs(), self.given.options.options());
         let ambient = inputs.ambient_step(&options.wanted.rows);
         Ok(train_plan(&inputs, ambient, &options.recipe, self.learning_curve.is_some()).into())
     }
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
-        let model = self.out.clone().context("--out is needed")?;
-        let outputs = TrainOutputs { model, learning_curve: self.learning_curve.clone(), merit: None };
-        Ok(train(&self.inputs(), &self.given.options.options(), &outputs, watch)?)
+    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
+        Ok(train(&self.inputs(), &self.given.options.options(), outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TrainReport) {
@@ -129,10 +132,6 @@ impl Command for TrainArgs {
                 ));
             }
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.clone()
     }
 }
 
