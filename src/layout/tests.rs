@@ -184,6 +184,35 @@ fn cells_outside_of_the_outline_are_left_out_and_hidden_rows_counted() {
 }
 
 #[test]
+fn photodiodes_are_not_read_where_the_sensor_had_a_fault() {
+    let folder = Folder::new();
+    let table = |read: &dyn Fn(usize) -> bool, status: &dyn Fn(usize) -> &'static str| {
+        let mut text = "time_s,P1,P2,P3,P4,P5,P6,P7,P8,J2_deg,sensor_status\n".to_owned();
+        for row in (0..200).filter(|row| read(*row)) {
+            write!(text, "{row}").unwrap();
+            // Where it is saturated P7 reads what it can at most.
+            let cell = |k: usize| if k == 6 && status(row) != "ok" { 5.0 } else { wave(row, k) };
+            (0..8).for_each(|k| write!(text, ",{:.9}", cell(k)).unwrap());
+            writeln!(text, ",{:.9},{}", 3.0 * wave(row, 6), status(row)).unwrap();
+        }
+        text
+    };
+    let saturates = |row: usize| if row.is_multiple_of(10) { "saturated: P7" } else { "ok" };
+    let run = |text: &str| folder.write("a.csv", text).run(&["a.csv"], "k = '1'").unwrap();
+    let report = run(&table(&|_| true, &saturates));
+    assert_eq!((report.persons[0].rows, report.persons[0].incomplete), (180, 20));
+    assert!(report.notes.iter().any(|note| note.ends_with("P7 in 20 rows")), "{:?}", report.notes);
+    let without = run(&table(&|row| saturates(row) == "ok", &|_| "ok"));
+    assert_eq!(
+        (&report.chosen.candidates, &report.chosen.by_target),
+        (without.chosen.candidates, without.chosen.by_target)
+    );
+    // Of another photodiode nothing is missing.
+    let often = run(&table(&|_| true, &|row| if row % 3 == 0 { "saturated: P7; no ambient: P2" } else { "ok" }));
+    assert_eq!((often.candidates, often.left_out_candidates.missing, often.persons[0].incomplete), (6, 2, 0));
+}
+
+#[test]
 fn photodiodes_have_the_thesis_places_or_those_of_a_file() {
     let eight = |change: fn(usize, usize, f64) -> String| {
         let mut text = "time_s,P1,P2,P3,P4,P5,P6,P7,P8,J2_deg\n".to_owned();

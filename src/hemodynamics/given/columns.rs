@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::hemodynamics::HemodynamicsError;
-use crate::log::{Channel, LitRows, LogReading, Statuses, Verdict};
+use crate::log::{Channel, LitRows, LogReading, without_faults};
 use crate::table::{Cell, Table};
 use crate::words::nearest;
 
@@ -238,15 +238,10 @@ impl Rows {
     /// # Errors
     /// No such column, a cell that is neither empty nor a finite number.
     pub(in crate::hemodynamics) fn voltages(&self, name: &str) -> Result<Voltages, HemodynamicsError> {
-        let own = [name.to_owned()];
-        let mut statuses = Statuses::new(&own);
-        let mut faulty = Vec::new();
-        let mut take = |status: &str| faulty.push(statuses.read(status) == Verdict::Fault);
         let mut values_v: Vec<f64> = Vec::new();
         match &self.from {
             Source::Log(lit) => {
                 values_v.extend(channel(lit, name).iter().flat_map(|channel| &channel.values));
-                lit.samples.faults.iter().for_each(|status| take(status));
                 if let Some(row) = values_v.iter().position(|value| value.is_infinite()) {
                     let what = "less the ambient light it is beyond 1e308; write the log in volts".to_owned();
                     return Err(HemodynamicsError::Rows(vec![self.fault(row, name, what)]));
@@ -272,14 +267,17 @@ impl Rows {
                     };
                     Err(table.cell(row, name, what))
                 })?;
-                if table.has("sensor_status") {
-                    table.each_text("sensor_status", |_, status| take(status))?;
-                }
             }
         }
-        let faults = faulty.iter().filter(|faulty| **faulty).count();
-        values_v.iter_mut().zip(&faulty).filter(|(_, faulty)| **faulty).for_each(|(value, _)| *value = f64::NAN);
-        Ok(Voltages { values_v, faults })
+        let faults = without_faults(vec![(name, &mut values_v)], |take| match &self.from {
+            Source::Log(lit) => {
+                lit.samples.faults.iter().enumerate().for_each(|(row, fault)| take(row, fault));
+                Ok(())
+            }
+            Source::Table(table) if table.has("sensor_status") => table.each_text("sensor_status", take),
+            Source::Table(_) => Ok(()),
+        })?;
+        Ok(Voltages { values_v, faults: faults[0] })
     }
 }
 

@@ -5,7 +5,8 @@
 //!
 //! A candidate is left out that is nearer to the edge of the nail's box than asked for, missing in more than a fifth of
 //! anybody's rows (outside of the outline, often hidden), or the same in all of anybody's rows (dead). Then a row
-//! counts where no reading and no target is missing.
+//! counts where no reading and no target is missing. A photodiode's reading is missing where the sensor had a fault, as
+//! `sensor_status` or the log says: saturated, or without ambient light.
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -20,9 +21,9 @@ use super::places::{Place, cells, is_photodiode, photodiodes};
 use crate::input::copies;
 use crate::layout::error::LayoutError;
 use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
-use crate::log::doubts;
+use crate::log::{doubts, without_faults};
 use crate::predictor::{cell, contradictions};
-use crate::table::Table;
+use crate::table::{Table, TableError};
 
 /// A candidate that more of a person's rows lack is left out (assumed).
 const MOST_MISSING: f64 = 0.2;
@@ -180,19 +181,47 @@ impl Source {
         let known = columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..]));
         let doubts = doubts::table(table.names(), known);
         let warnings = doubts.iter().map(|doubt| input.placed(doubt)).collect();
-        Ok(Self { names: table.names().to_vec(), time_s, columns, subject, notes: Vec::new(), warnings })
+        let mut notes = Vec::new();
+        if table.has("sensor_status") {
+            notes.extend(faults(&mut columns, input, |take| table.each_text("sensor_status", take))?);
+        }
+        Ok(Self { names: table.names().to_vec(), time_s, columns, subject, notes, warnings })
     }
 
     fn of_log(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let lit = options.log.lit_rows(&input.path)?;
-        let notes = lit.notes.iter().chain(&lit.samples.notes).map(|note| input.placed(note)).collect();
+        let mut notes: Vec<String> =
+            lit.notes.iter().chain(&lit.samples.notes).map(|note| input.placed(note)).collect();
         let warnings = lit.samples.warnings.iter().map(|warning| input.placed(warning)).collect();
         let channels = lit.samples.photodiodes.into_iter().chain(lit.samples.forces);
         let columns: Vec<_> = channels.map(|channel| (channel.name, channel.values)).collect();
         let names = columns.iter().map(|(name, _)| name.clone()).collect();
         let subject = vec![input.person(); lit.samples.time_s.len()];
-        Ok(Self { names, time_s: lit.samples.time_s, columns: columns.into_iter().collect(), subject, notes, warnings })
+        let mut columns = columns.into_iter().collect();
+        notes.extend(faults(&mut columns, input, |take| {
+            lit.samples.faults.iter().enumerate().for_each(|(row, fault)| take(row, fault));
+            Ok(())
+        })?);
+        Ok(Self { names, time_s: lit.samples.time_s, columns, subject, notes, warnings })
     }
+}
+
+/// Takes away the readings of photodiodes in rows in which the sensor had a fault; what to say of them.
+fn faults(
+    columns: &mut BTreeMap<String, Vec<f64>>,
+    input: &LayoutInput,
+    each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), TableError>,
+) -> Result<Option<String>, TableError> {
+    let photodiodes: Vec<(&str, &mut [f64])> = columns
+        .iter_mut()
+        .filter(|(name, _)| is_photodiode(name))
+        .map(|(name, values)| (name.as_str(), &mut values[..]))
+        .collect();
+    let names: Vec<String> = photodiodes.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let counts = names.iter().zip(without_faults(photodiodes, each)?).filter(|(_, rows)| *rows > 0);
+    let counts: Vec<String> = counts.map(|(name, rows)| format!("{name} in {rows} rows")).collect();
+    let said = || input.placed(&format!("not read where saturated or without ambient light: {}", counts.join(", ")));
+    Ok((!counts.is_empty()).then(said))
 }
 
 impl LayoutInput {

@@ -56,6 +56,25 @@ impl Statuses {
     }
 }
 
+/// Takes photodiodes' values away in the rows whose status, of which `each` says row and text, warns of them; in how
+/// many rows of each.
+pub(crate) fn without_faults<E>(
+    photodiodes: Vec<(&str, &mut [f64])>,
+    each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), E>,
+) -> Result<Vec<usize>, E> {
+    let of = |(name, values)| (Statuses::new(&[str::to_owned(name)]), values, 0);
+    let mut all: Vec<(Statuses, &mut [f64], usize)> = photodiodes.into_iter().map(of).collect();
+    each(&mut |row, status| {
+        for (statuses, values, faults) in &mut all {
+            if statuses.read(status) == Verdict::Fault {
+                values[row] = f64::NAN;
+                *faults += 1;
+            }
+        }
+    })?;
+    Ok(all.into_iter().map(|(.., faults)| faults).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
