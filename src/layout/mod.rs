@@ -22,7 +22,7 @@ mod solve;
 mod tests;
 
 pub use error::LayoutError;
-pub use options::{LayoutInput, LayoutInputs, LayoutOptions, Numbers};
+pub use options::{LayoutInputs, LayoutOptions, Numbers};
 pub use read::{LeftOutCandidates, PersonFigures};
 pub use run::job::run;
 pub use run::plan::plan;

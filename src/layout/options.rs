@@ -8,6 +8,7 @@ use clap::Args;
 
 use crate::job::{not_negative, number};
 use crate::log::LogReading;
+use crate::predictor::DataFile;
 
 /// The most photodiodes that are looked for: more are better chosen by leaving out.
 const MOST_PLACES: usize = 16;
@@ -110,28 +111,11 @@ fn diameter(text: &str) -> Result<f64, String> {
     number(text).ok().filter(|mm| *mm > 0.0 && *mm <= 6.0).ok_or_else(|| "write more than 0 and up to 6 mm".to_owned())
 }
 
-/// An input, and whose it is where it does not say so itself.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LayoutInput {
-    /// A table, a log or the folder of `lunula photos`' results.
-    pub path: PathBuf,
-    /// What reports call it.
-    pub name: String,
-    /// The person, where there is no column `subject`; none: the file is one.
-    pub subject: Option<String>,
-}
-
-impl From<PathBuf> for LayoutInput {
-    fn from(path: PathBuf) -> Self {
-        Self { name: path.display().to_string(), path, subject: None }
-    }
-}
-
 /// What is read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LayoutInputs {
     /// Tables and logs, or one folder of maps.
-    pub data: Vec<LayoutInput>,
+    pub data: Vec<DataFile>,
     /// Places of the columns `P1`, `P2`, ..: TOML or JSON.
     pub positions: Option<PathBuf>,
 }

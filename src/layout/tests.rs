@@ -10,6 +10,7 @@ use ndarray_npy::WriteNpyExt;
 use super::*;
 use crate::job::{Outputs, Watch, read};
 use crate::nail::Positions;
+use crate::predictor::DataFile;
 use crate::table::Table;
 
 /// Of few operations on tables of 9 digits.
@@ -34,8 +35,7 @@ impl Folder {
     /// Lays out what files say, with options as a pipeline writes them; without pictures.
     fn run(&self, files: &[&str], options: &str) -> Result<LayoutReport, LayoutError> {
         let given = read::<LayoutOptions>(&options.parse().unwrap(), "lunula layout").unwrap();
-        let data =
-            files.iter().map(|name| LayoutInput { name: (*name).to_owned(), ..self.path(name).into() }).collect();
+        let data = files.iter().map(|name| DataFile { name: (*name).to_owned(), ..self.path(name).into() }).collect();
         let positions = Some(self.path("positions.toml")).filter(|path| path.exists());
         let outputs = Outputs { figures: false, ..Outputs::all(self.path("out")) };
         run(&LayoutInputs { data, positions }, &given.options, &outputs, &Watch::nobody())
@@ -205,7 +205,7 @@ fn photodiodes_are_not_read_where_the_sensor_had_a_fault() {
     let without = run(&table(&|row| saturates(row) == "ok", &|_| "ok"));
     assert_eq!(
         (&report.chosen.candidates, &report.chosen.by_target),
-        (without.chosen.candidates, without.chosen.by_target)
+        (&without.chosen.candidates, &without.chosen.by_target)
     );
     // Of another photodiode nothing is missing.
     let often = run(&table(&|_| true, &|row| if row % 3 == 0 { "saturated: P7; no ambient: P2" } else { "ok" }));
@@ -400,7 +400,7 @@ fn pictures_show_the_places_and_the_errors() {
     let noisy = |row: usize, k: usize, value: f64| format!("{:.9}", value + 0.3 * wave(7 * row + 3, k + 40));
     folder.write("a.csv", &cells(0, 100, noisy)).write("b.csv", &cells(1, 100, noisy));
     let given = read::<LayoutOptions>(&"k = '1..3'\nchoose = 3".parse().unwrap(), "").unwrap();
-    let data = ["a.csv", "b.csv"].map(|name| LayoutInput::from(folder.path(name))).to_vec();
+    let data = ["a.csv", "b.csv"].map(|name| DataFile::from(folder.path(name))).to_vec();
     let outputs = Outputs { report: false, ..Outputs::all(folder.path("out")) };
     let inputs = LayoutInputs { data, positions: None };
     let report = run(&inputs, &given.options, &outputs, &Watch::nobody()).unwrap();

@@ -1,7 +1,7 @@
 //! Why a session with a sensor, or what is made of its recordings, has no result.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -25,6 +25,9 @@ pub enum LiveError {
     Write { path: PathBuf, why: io::Error },
     #[error("standard output: cannot be written ({0}); make room, or send it elsewhere")]
     Rows(io::Error),
+    /// Several faults, a line each, with their places.
+    #[error("{}", .0.join("\n"))]
+    Faults(Vec<String>),
     #[error("{place}: {what}")]
     Source { place: String, what: String },
     #[error("{}: {what}", path.display())]
@@ -39,4 +42,11 @@ pub enum LiveError {
     Results(#[from] WriteError),
     #[error("stopped")]
     Interrupted(#[from] crate::job::Interrupted),
+}
+
+impl LiveError {
+    /// What is wrong with a recording as a whole.
+    pub(super) fn recording(path: &Path, what: &str) -> Self {
+        Self::Faults(vec![format!("{}: {what}", path.display())])
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use lunula_predictor::{CrossFault, FileFault, GateFault, LearningFault, RecipeFault, SubsetFault};
+use lunula_predictor::{CrossFault, FileFault, ForceSpaceFault, GateFault, LearningFault, RecipeFault, SubsetFault};
 use thiserror::Error;
 
 use super::data::DataError;
@@ -30,6 +30,8 @@ pub enum PredictorError {
     Subset(#[from] SubsetFault),
     #[error(transparent)]
     Gate(#[from] GateFault),
+    #[error(transparent)]
+    Space(#[from] ForceSpaceFault),
     #[error("{0}")]
     Request(String),
     #[error(transparent)]

@@ -20,9 +20,9 @@ use super::given::{Given, LeftOutCandidates, Parts, PersonFigures, Target};
 use super::places::{Place, cells, is_photodiode, photodiodes};
 use crate::input::copies;
 use crate::layout::error::LayoutError;
-use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
+use crate::layout::options::{LayoutInputs, LayoutOptions};
 use crate::log::{doubts, without_faults};
-use crate::predictor::{cell, contradictions};
+use crate::predictor::{DataFile, cell, contradictions};
 use crate::table::{Table, TableError};
 
 /// A candidate that more of a person's rows lack is left out (assumed).
@@ -155,11 +155,11 @@ impl Given {
 }
 
 impl Source {
-    fn read(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
+    fn read(input: &DataFile, options: &LayoutOptions) -> Result<Self, LayoutError> {
         if options.log.is_log(&input.path)? { Self::of_log(input, options) } else { Self::of_table(input, options) }
     }
 
-    fn of_table(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
+    fn of_table(input: &DataFile, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let table = Table::read(&input.path)?;
         let mut columns = BTreeMap::new();
         // Only clocks are compared by it: places are found without.
@@ -170,7 +170,7 @@ impl Source {
                 columns.insert(name.clone(), table.values(name)?);
             }
         }
-        let mut subject = vec![input.person(); table.rows()];
+        let mut subject = vec![input.person().to_owned(); table.rows()];
         if table.has("subject") {
             table.each_text("subject", |row, text| {
                 if !text.is_empty() {
@@ -180,7 +180,7 @@ impl Source {
         }
         let known = columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..]));
         let doubts = doubts::table(table.names(), known);
-        let warnings = doubts.iter().map(|doubt| input.placed(doubt)).collect();
+        let warnings = doubts.iter().map(|doubt| placed(input, doubt)).collect();
         let mut notes = Vec::new();
         if table.has("sensor_status") {
             notes.extend(faults(&mut columns, input, |take| table.each_text("sensor_status", take))?);
@@ -188,15 +188,15 @@ impl Source {
         Ok(Self { names: table.names().to_vec(), time_s, columns, subject, notes, warnings })
     }
 
-    fn of_log(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
+    fn of_log(input: &DataFile, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let lit = options.log.lit_rows(&input.path)?;
         let mut notes: Vec<String> =
-            lit.notes.iter().chain(&lit.samples.notes).map(|note| input.placed(note)).collect();
-        let warnings = lit.samples.warnings.iter().map(|warning| input.placed(warning)).collect();
+            lit.notes.iter().chain(&lit.samples.notes).map(|note| placed(input, note)).collect();
+        let warnings = lit.samples.warnings.iter().map(|warning| placed(input, warning)).collect();
         let channels = lit.samples.photodiodes.into_iter().chain(lit.samples.forces);
         let columns: Vec<_> = channels.map(|channel| (channel.name, channel.values)).collect();
         let names = columns.iter().map(|(name, _)| name.clone()).collect();
-        let subject = vec![input.person(); lit.samples.time_s.len()];
+        let subject = vec![input.person().to_owned(); lit.samples.time_s.len()];
         let mut columns = columns.into_iter().collect();
         notes.extend(faults(&mut columns, input, |take| {
             lit.samples.faults.iter().enumerate().for_each(|(row, fault)| take(row, fault));
@@ -209,7 +209,7 @@ impl Source {
 /// Takes away the readings of photodiodes in rows in which the sensor had a fault; what to say of them.
 fn faults(
     columns: &mut BTreeMap<String, Vec<f64>>,
-    input: &LayoutInput,
+    input: &DataFile,
     each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), TableError>,
 ) -> Result<Option<String>, TableError> {
     let photodiodes: Vec<(&str, &mut [f64])> = columns
@@ -220,18 +220,12 @@ fn faults(
     let names: Vec<String> = photodiodes.iter().map(|(name, _)| (*name).to_owned()).collect();
     let counts = names.iter().zip(without_faults(photodiodes, each)?).filter(|(_, rows)| *rows > 0);
     let counts: Vec<String> = counts.map(|(name, rows)| format!("{name} in {rows} rows")).collect();
-    let said = || input.placed(&format!("not read where saturated or without ambient light: {}", counts.join(", ")));
+    let said = || placed(input, &format!("not read where saturated or without ambient light: {}", counts.join(", ")));
     Ok((!counts.is_empty()).then(said))
 }
 
-impl LayoutInput {
-    fn person(&self) -> String {
-        self.subject.clone().unwrap_or_else(|| self.name.clone())
-    }
-
-    fn placed(&self, what: &str) -> String {
-        format!("{}: {what}", self.path.display())
-    }
+fn placed(input: &DataFile, what: &str) -> String {
+    format!("{}: {what}", input.path.display())
 }
 
 /// Whether all files have the same candidates.
@@ -305,7 +299,7 @@ fn contradicted(sources: &[Source], inputs: &LayoutInputs, own: &[&str], targets
             }
         }
         let rows = start..time_s.len();
-        let [name, session, subject] = [&input.name, &input.name, &input.person()].map(String::clone);
+        let [name, session, subject] = [&input.name, &input.name, input.person()].map(str::to_owned);
         recordings.push(Recording { name, session, subject, rows: rows.clone() });
         parts.push(rows);
     }

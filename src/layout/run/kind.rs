@@ -4,16 +4,13 @@ use super::job::run;
 use super::plan::steps;
 use super::report::LayoutFigures;
 use super::results::{POSITIONS, TABLE};
-use crate::job::{At, Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
-use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
+use crate::layout::options::{LayoutInputs, LayoutOptions};
 use crate::layout::read::is_maps;
 use crate::layout::solve::Method;
 use crate::log::ReadingCost;
+use crate::predictor::DataFile;
 use crate::stages::Step;
-
-fn input(at: &At) -> LayoutInput {
-    LayoutInput { path: at.path.clone(), name: at.name.clone(), subject: at.keys.get("subject").map(str::to_owned) }
-}
 
 impl Job for LayoutOptions {
     const KIND: Kind = Kind::of::<Self>(
@@ -40,7 +37,7 @@ impl Job for LayoutOptions {
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let inputs = LayoutInputs {
-            data: work.of("data").map(input).collect(),
+            data: work.of("data").map(DataFile::from).collect(),
             positions: work.one("positions").map(|input| input.path.clone()),
         };
         let outputs = order.demand.outputs(work.folder);

@@ -10,9 +10,10 @@ use super::options::PerformanceOptions;
 use super::read::{Row, Trials, read};
 use super::report::{PerformanceFigures, PerformanceReport};
 use super::tables::{MEANS, ROWS, write_means, write_rows};
-use super::{PerformanceError, analysis, figures};
+use super::{analysis, figures};
 use crate::files::Places;
 use crate::job::{Outputs, Report, Watch};
+use crate::live::error::LiveError;
 use crate::median::median_of;
 use crate::stages::{Stages, Step, left_out};
 use crate::words::{instead, twins};
@@ -40,14 +41,14 @@ pub fn plan(outputs: Option<&Outputs>) -> Vec<Step> {
 /// Runs the job on a table that results call `name`; every result is in its place when it returns.
 ///
 /// # Errors
-/// [`PerformanceError`] where there are no results.
+/// [`LiveError`] where there are no results.
 pub fn run(
     data: &Path,
     name: &str,
     options: &PerformanceOptions,
     outputs: &Outputs,
     watch: &Watch<'_>,
-) -> Result<PerformanceReport, PerformanceError> {
+) -> Result<PerformanceReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
     let folder = &outputs.out;
@@ -91,11 +92,11 @@ pub fn run(
 }
 
 /// Which method the others are compared with.
-fn baseline(options: &PerformanceOptions, trials: &Trials, name: &str) -> Result<usize, PerformanceError> {
+fn baseline(options: &PerformanceOptions, trials: &Trials, name: &str) -> Result<usize, LiveError> {
     let Some(baseline) = &options.baseline else { return Ok(0) };
     trials.methods.iter().position(|method| method == baseline).ok_or_else(|| {
         let known: Vec<&str> = trials.methods.iter().map(String::as_str).collect();
-        PerformanceError::Rows(vec![format!(
+        LiveError::Faults(vec![format!(
             "{name}: has no method `{baseline}` of --baseline; {}",
             instead(baseline, &known)
         )])

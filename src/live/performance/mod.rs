@@ -9,7 +9,6 @@
 //! operators, the text of Fig. 124 speaks of five.)
 
 mod analysis;
-mod error;
 mod figures;
 mod job;
 mod kind;
@@ -18,7 +17,6 @@ mod read;
 mod report;
 mod tables;
 
-pub use error::PerformanceError;
 pub use job::{plan, run};
 pub use options::PerformanceOptions;
 pub use report::{

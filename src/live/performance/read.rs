@@ -5,7 +5,7 @@ use std::path::Path;
 
 use lunula_live::performance::Course;
 
-use super::PerformanceError;
+use crate::live::error::LiveError;
 use crate::table::Table;
 
 /// More rows than anybody's trials.
@@ -55,8 +55,8 @@ fn place(of: &str, names: &mut Vec<String>, places: &mut BTreeMap<String, usize>
 ///
 /// # Errors
 /// A table that can't be read, a cell that is wrong, two rows of one operator, method and trial, or no row to use.
-pub(super) fn read(path: &Path, name: &str, course: &Course) -> Result<Trials, PerformanceError> {
-    let whole = |what: String| PerformanceError::Rows(vec![format!("{name}: {what}")]);
+pub(super) fn read(path: &Path, name: &str, course: &Course) -> Result<Trials, LiveError> {
+    let whole = |what: String| LiveError::Faults(vec![format!("{name}: {what}")]);
     let table = Table::read(path)?;
     if table.rows() > MOST_ROWS {
         return Err(whole(format!("has {} rows; trials are at most {MOST_ROWS}", table.rows())));
@@ -108,7 +108,7 @@ pub(super) fn read(path: &Path, name: &str, course: &Course) -> Result<Trials, P
         }
     }
     if !twice.is_empty() {
-        return Err(PerformanceError::Rows(shortened(twice)));
+        return Err(LiveError::Faults(shortened(twice)));
     }
     for (many, most, column) in
         [(trials.methods.len(), MOST_METHODS, "method"), (trials.operators.len(), MOST_OPERATORS, "operator")]
@@ -120,7 +120,7 @@ pub(super) fn read(path: &Path, name: &str, course: &Course) -> Result<Trials, P
     if trials.rows.is_empty() {
         let mut faults = vec![format!("{name}: has no trial to use; write operator, method, trial, time_s")];
         faults.extend(shortened(std::mem::take(&mut trials.impossible)));
-        return Err(PerformanceError::Rows(faults));
+        return Err(LiveError::Faults(faults));
     }
     trials.impossible = shortened(trials.impossible);
     Ok(trials)

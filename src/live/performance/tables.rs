@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::PerformanceError;
 use super::read::Trials;
 use super::report::PerformanceFigures;
 use crate::files::Places;
+use crate::live::error::LiveError;
 use crate::table::{Column, TableWriter, Value};
 
 /// The table of means.
@@ -14,11 +14,7 @@ pub(super) const MEANS: &str = "table.csv";
 pub(super) const ROWS: &str = "rows.csv";
 
 /// Writes the means, with the better curve and the comparison with the baseline.
-pub(super) fn write_means(
-    figures: &PerformanceFigures,
-    folder: &Path,
-    places: &mut Places,
-) -> Result<(), PerformanceError> {
+pub(super) fn write_means(figures: &PerformanceFigures, folder: &Path, places: &mut Places) -> Result<(), LiveError> {
     let path = folder.join(MEANS);
     let mut columns = vec![Column::text("method"), Column::integer("trial"), Column::integer("n")];
     columns.extend(
@@ -50,7 +46,7 @@ pub(super) fn write_means(
 }
 
 /// Writes the time per decision of each row that is counted.
-pub(super) fn write_rows(trials: &Trials, folder: &Path, places: &mut Places) -> Result<(), PerformanceError> {
+pub(super) fn write_rows(trials: &Trials, folder: &Path, places: &mut Places) -> Result<(), LiveError> {
     let path = folder.join(ROWS);
     let columns = vec![
         Column::text("operator"),

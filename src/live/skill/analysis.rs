@@ -4,8 +4,10 @@ use lunula_live::skill::{Contact, Figures, Force, MOST_POINTS, Thresholds, dista
 
 use super::read::{Recording, Trial, read};
 use super::report::{FingerFigures, PostureFigures, TrialFigures};
-use super::{SkillError, SkillInputs, SkillOptions, SkillRecording};
+use super::{SkillInputs, SkillOptions};
 use crate::input::same_to_the_byte;
+use crate::live::error::LiveError;
+use crate::predictor::DataFile;
 
 /// So many trials are named in a message.
 const MOST_NAMED: usize = 10;
@@ -27,7 +29,7 @@ impl Reference {
     ///
     /// # Errors
     /// A recording that can't be read or holds several trials, or a name that none or several have.
-    pub(super) fn find(inputs: &SkillInputs, options: &SkillOptions) -> Result<Option<Self>, SkillError> {
+    pub(super) fn find(inputs: &SkillInputs, options: &SkillOptions) -> Result<Option<Self>, LiveError> {
         match (&inputs.reference, &options.reference_trial) {
             (Some(recording), _) => Self::recorded(recording, &inputs.recordings, options).map(Some),
             (None, Some(name)) => Self::named(name, &inputs.recordings, options),
@@ -35,11 +37,7 @@ impl Reference {
         }
     }
 
-    fn recorded(
-        recording: &SkillRecording,
-        others: &[SkillRecording],
-        options: &SkillOptions,
-    ) -> Result<Self, SkillError> {
+    fn recorded(recording: &DataFile, others: &[DataFile], options: &SkillOptions) -> Result<Self, LiveError> {
         let mut trials = read(recording, &options.finger)?.trials;
         let files = std::iter::once(recording).chain(others).map(|one| (one, one.path.as_path()));
         // A file that is named twice is one, and so is its copy.
@@ -47,7 +45,7 @@ impl Reference {
         let within = same.into_iter().flatten().skip(1).map(|(one, _)| one.name.clone()).collect();
         match (trials.len(), trials.pop()) {
             (1, Some(trial)) => Ok(Self::of(recording.name.clone(), trial, within, &options.thresholds())),
-            _ => Err(SkillError::Recordings(vec![format!(
+            _ => Err(LiveError::Faults(vec![format!(
                 "{}: holds several trials; a reference is one: give a recording of it, or name it as \
                  --reference-trial",
                 recording.name
@@ -55,8 +53,8 @@ impl Reference {
         }
     }
 
-    fn named(wanted: &str, recordings: &[SkillRecording], options: &SkillOptions) -> Result<Option<Self>, SkillError> {
-        let refused = |what: String| Err(SkillError::Recordings(vec![format!("--reference-trial {wanted}: {what}")]));
+    fn named(wanted: &str, recordings: &[DataFile], options: &SkillOptions) -> Result<Option<Self>, LiveError> {
+        let refused = |what: String| Err(LiveError::Faults(vec![format!("--reference-trial {wanted}: {what}")]));
         let (mut first, mut matching, mut others) = (None, Vec::new(), Vec::new());
         for recording in recordings {
             // What can't be read is reported as such later.

@@ -8,15 +8,17 @@ use rayon::prelude::*;
 
 use super::analysis::{self, Reference};
 use super::figures::{self, Drawn, MOST_DRAWN};
-use super::options::{SkillInputs, SkillOptions, SkillRecording};
+use super::options::{SkillInputs, SkillOptions};
 use super::read::read;
 use super::report::{SkillFigures, SkillReport, TrialFigures};
+use super::summary;
 use super::table::{self, TABLE};
-use super::{SkillError, summary};
 use crate::files::Places;
 use crate::input::copies;
 use crate::job::{Outputs, Report, Watch};
+use crate::live::error::LiveError;
 use crate::log::doubts;
+use crate::predictor::DataFile;
 use crate::stages::{Stages, Step, left_out};
 use crate::words::twins;
 
@@ -28,19 +30,19 @@ const REPORT: &str = "run.json";
 /// What would be done and what not, of so many recordings; `reference`: whether a recording is compared with.
 ///
 /// # Errors
-/// [`SkillError::Options`].
+/// [`LiveError::Request`].
 pub fn plan(
     recordings: usize,
     reference: bool,
     options: &SkillOptions,
     outputs: Option<&Outputs>,
-) -> Result<Vec<Step>, SkillError> {
+) -> Result<Vec<Step>, LiveError> {
     let mut faults = options.faults();
     if reference && options.reference_trial.is_some() {
         faults.push("--reference-trial: there is a --reference recording as well; choose one of them".to_owned());
     }
     if !faults.is_empty() {
-        return Err(SkillError::Options(faults));
+        return Err(LiveError::Request(faults.join("; ")));
     }
     let compared = reference || options.reference_trial.is_some();
     let why = if compared { "by time warping" } else { "neither --reference nor --reference-trial" };
@@ -67,13 +69,13 @@ struct Done {
 /// Runs the job; every result is in its place when it returns.
 ///
 /// # Errors
-/// [`SkillError`] where there are no results.
+/// [`LiveError`] where there are no results.
 pub fn run(
     inputs: &SkillInputs,
     options: &SkillOptions,
     outputs: &Outputs,
     watch: &Watch<'_>,
-) -> Result<SkillReport, SkillError> {
+) -> Result<SkillReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
     let steps = plan(inputs.recordings.len(), inputs.reference.is_some(), options, Some(outputs))?;
@@ -84,14 +86,13 @@ pub fn run(
     let reference = stages.time("reference", || Reference::find(inputs, options))?;
     watch.go_on()?;
     let count = AtomicU64::new(0);
-    let one = |recording: &SkillRecording| {
+    let one = |recording: &DataFile| {
         watch.go_on()?;
         let done = stages.time("contacts", || analysed(recording, reference.as_ref(), options, outputs.figures));
         (watch.tick)(count.fetch_add(1, Ordering::Relaxed) + 1, Some(inputs.recordings.len() as u64));
         Ok(done)
     };
-    let all: Vec<Result<Done, SkillError>> =
-        inputs.recordings.par_iter().map(one).collect::<Result<_, SkillError>>()?;
+    let all: Vec<Result<Done, LiveError>> = inputs.recordings.par_iter().map(one).collect::<Result<_, LiveError>>()?;
     let (mut done, mut failed) = (Vec::new(), Vec::new());
     for (recording, one) in inputs.recordings.iter().zip(all) {
         match one {
@@ -100,7 +101,7 @@ pub fn run(
         }
     }
     if done.is_empty() {
-        return Err(SkillError::Recordings(failed));
+        return Err(LiveError::Faults(failed));
     }
     distinct(&done)?;
     let (mut notes, mut warnings) = said(&done, reference.as_ref());
@@ -144,11 +145,11 @@ pub fn run(
 
 /// Reads a recording and looks at its trials.
 fn analysed(
-    recording: &SkillRecording,
+    recording: &DataFile,
     reference: Option<&Reference>,
     options: &SkillOptions,
     draw: bool,
-) -> Result<Done, SkillError> {
+) -> Result<Done, LiveError> {
     let read = read(recording, &options.finger)?;
     let name = &recording.name;
     let (mut trials, mut drawn, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
@@ -176,8 +177,8 @@ fn analysed(
 }
 
 /// A person has each trial once.
-fn distinct(done: &[(&SkillRecording, Done)]) -> Result<(), SkillError> {
-    let mut seen: BTreeMap<(&Option<String>, &str), &SkillRecording> = BTreeMap::new();
+fn distinct(done: &[(&DataFile, Done)]) -> Result<(), LiveError> {
+    let mut seen: BTreeMap<(&Option<String>, &str), &DataFile> = BTreeMap::new();
     let mut twice = Vec::new();
     for (recording, one) in done {
         for trial in &one.trials {
@@ -190,11 +191,11 @@ fn distinct(done: &[(&SkillRecording, Done)]) -> Result<(), SkillError> {
             ));
         }
     }
-    if twice.is_empty() { Ok(()) } else { Err(SkillError::Recordings(twice)) }
+    if twice.is_empty() { Ok(()) } else { Err(LiveError::Faults(twice)) }
 }
 
 /// Notes and warnings on all recordings.
-fn said(done: &[(&SkillRecording, Done)], reference: Option<&Reference>) -> (Vec<String>, Vec<String>) {
+fn said(done: &[(&DataFile, Done)], reference: Option<&Reference>) -> (Vec<String>, Vec<String>) {
     let mut notes: Vec<String> = done.iter().flat_map(|(_, one)| one.notes.iter().cloned()).collect();
     let mut warnings = copies(done.iter().map(|(recording, _)| (recording.name.clone(), recording.path.as_path())));
     warnings.extend(done.iter().flat_map(|(_, one)| one.warnings.iter().cloned()));

@@ -1,20 +1,17 @@
 //! `skill` in a pipeline: what fingers did in trials (6.3).
 
 use super::job::{FIGURES, plan, run};
-use super::options::{SkillInputs, SkillOptions, SkillRecording};
+use super::options::{SkillInputs, SkillOptions};
 use super::table::TABLE;
 use crate::job::{At, Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use crate::log::ReadingCost;
+use crate::predictor::DataFile;
 use crate::stages::Step;
 
-fn recording(input: &At) -> SkillRecording {
-    let of = |key: &str| input.keys.get(key).map(str::to_owned);
-    SkillRecording {
-        path: input.path.clone(),
-        name: input.name.clone(),
-        subject: of("subject"),
-        trial: of("trial").or_else(|| of("session")),
-    }
+/// A recording; a trial is what the key `trial` says, else the session.
+fn recording(at: &At) -> DataFile {
+    let file = DataFile::from(at);
+    DataFile { session: at.keys.get("trial").map(str::to_owned).or(file.session), ..file }
 }
 
 impl Job for SkillOptions {

@@ -9,7 +9,6 @@
 //! which, forces count in rows in touch, and angles in rows in bending.
 
 mod analysis;
-mod error;
 mod figures;
 mod job;
 mod kind;
@@ -20,7 +19,6 @@ mod rows;
 mod summary;
 mod table;
 
-pub use error::SkillError;
 pub use job::{plan, run};
-pub use options::{SkillInputs, SkillOptions, SkillRecording};
+pub use options::{SkillInputs, SkillOptions};
 pub use report::{FingerFigures, FingerSpread, PersonFigures, PostureFigures, SkillFigures, SkillReport, TrialFigures};

@@ -1,11 +1,10 @@
 //! What counts as a contact, and what trials are compared with.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use lunula_live::skill::Thresholds;
 
 use crate::job::not_negative;
+use crate::predictor::DataFile;
 
 /// What counts as a contact, and what trials are compared with.
 #[derive(Debug, Clone, PartialEq, Args)]
@@ -68,32 +67,11 @@ impl SkillOptions {
     }
 }
 
-/// A recording, and whose it is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SkillRecording {
-    /// The file.
-    pub path: PathBuf,
-    /// What results call it.
-    pub name: String,
-    /// The person, where no column `subject` says it.
-    pub subject: Option<String>,
-    /// The trial, where no column `trial` says it; none: the file's name without its ending.
-    pub trial: Option<String>,
-}
-
-impl SkillRecording {
-    /// A file of which nothing else is known.
-    #[must_use]
-    pub fn of(path: PathBuf) -> Self {
-        Self { name: path.display().to_string(), path, subject: None, trial: None }
-    }
-}
-
 /// What is looked at.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SkillInputs {
-    /// Recordings of trials.
-    pub recordings: Vec<SkillRecording>,
+    /// Recordings of trials; without a column `trial`, the session is one, else the file.
+    pub recordings: Vec<DataFile>,
     /// A recording of one trial that the others are compared with.
-    pub reference: Option<SkillRecording>,
+    pub reference: Option<DataFile>,
 }

@@ -4,8 +4,9 @@ use lunula_live::skill::Force;
 use lunula_live::spread::Spread;
 
 use super::rows::{self, FORCE, Finger, Gate, Rows};
-use super::{SkillError, SkillRecording};
+use crate::live::error::LiveError;
 use crate::log::{Still, doubts};
+use crate::predictor::DataFile;
 
 /// More trials of a recording are something else: a column was mistaken.
 const MOST_TRIALS: usize = 10_000;
@@ -47,11 +48,11 @@ pub(super) struct Recording {
 }
 
 /// Reads a recording; `finger` is the name of a plain `Fz_N`.
-pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording, SkillError> {
+pub(super) fn read(recording: &DataFile, finger: &str) -> Result<Recording, LiveError> {
     let path = &recording.path;
     let rows = rows::read(path, finger)?;
     let own_trial = recording
-        .trial
+        .session
         .clone()
         .unwrap_or_else(|| path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()));
     // Rows of each trial, in the order in which trials first appear.
@@ -78,14 +79,14 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
         if place == trials.len() {
             if place == MOST_TRIALS {
                 let what = format!("column `trial`: has more than {MOST_TRIALS} trials; is it the number of the row?");
-                return Err(SkillError::recording(path, &what));
+                return Err(LiveError::recording(path, &what));
             }
             trials.push((key, Vec::new()));
         }
         trials[place].1.push(row);
     }
     if trials.is_empty() {
-        return Err(SkillError::recording(path, "has no row with a time and a trial; record it again"));
+        return Err(LiveError::recording(path, "has no row with a time and a trial; record it again"));
     }
     let other_subject = recording.subject.as_ref().and_then(|given| {
         let other = rows.subject.iter().flatten().flatten().find(|own| *own != given)?;
@@ -100,12 +101,12 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
             in_order(&rows, &own, recording)?;
             Ok(of_finger(&rows, finger, &own))
         });
-        let mut fingers = fingers.collect::<Result<Vec<FingerTrial>, SkillError>>()?;
+        let mut fingers = fingers.collect::<Result<Vec<FingerTrial>, LiveError>>()?;
         copies(&mut fingers);
         Ok(Trial { subject, trial, fingers })
     };
     Ok(Recording {
-        trials: trials.into_iter().map(one).collect::<Result<_, SkillError>>()?,
+        trials: trials.into_iter().map(one).collect::<Result<_, LiveError>>()?,
         gated: rows.fingers.iter().any(|finger| !finger.gate.is_empty()),
         angles_without_gate: rows.angles_without_gate,
         without_time,
@@ -119,7 +120,7 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
 const COARSE: f64 = 0.1;
 
 /// A finger's time has to go forward within a trial: how fast a force rises is not known of rows at one time.
-fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<(), SkillError> {
+fn in_order(rows: &Rows, own: &[usize], recording: &DataFile) -> Result<(), LiveError> {
     let still = own.windows(2).filter(|pair| rows.time_s[pair[1]] == rows.time_s[pair[0]]).count();
     if still as f64 > COARSE * own.len() as f64 {
         let what = format!(
@@ -127,7 +128,7 @@ fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<()
              each row its own time",
             own.len()
         );
-        return Err(SkillError::recording(&recording.path, &what));
+        return Err(LiveError::recording(&recording.path, &what));
     }
     let back = own.windows(2).find(|pair| rows.time_s[pair[1]] < rows.time_s[pair[0]]);
     let Some((pair, table)) = back.zip(rows.table.as_ref()) else { return Ok(()) };
@@ -137,7 +138,7 @@ fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<()
         rows.time_s[pair[0]],
         rows.time_s[pair[1]]
     );
-    Err(SkillError::recording(&recording.path, &what))
+    Err(LiveError::recording(&recording.path, &what))
 }
 
 /// Where a finger presses with less than this nothing is said of a force that stands still, newtons (assumed).

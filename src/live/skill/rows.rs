@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::SkillError;
+use crate::live::error::LiveError;
 use crate::log::{Columns, Log, LogError};
 use crate::table::{Table, TableError, column_names};
 
@@ -61,7 +61,7 @@ pub(super) struct Rows {
 }
 
 /// Reads a recording; `finger` is the name of a plain `Fz_N`.
-pub(super) fn read(path: &Path, finger: &str) -> Result<Rows, SkillError> {
+pub(super) fn read(path: &Path, finger: &str) -> Result<Rows, LiveError> {
     match column_names(path) {
         Ok(names) if names.iter().any(|name| name == TIME) && names.iter().any(|name| is_force(name)) => {
             of_table(path, finger)
@@ -81,19 +81,19 @@ fn finger_of<'a>(name: &'a str, column: &str) -> Option<&'a str> {
     name.strip_suffix(column)?.strip_suffix('.').filter(|finger| !finger.is_empty())
 }
 
-fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
+fn of_log(path: &Path, finger: &str) -> Result<Rows, LiveError> {
     let log = Log::read(path, &Columns::default()).map_err(|why| match why {
         LogError::Columns { .. } => {
             let what = "is neither a table with time_s and Fz_N (or FINGER.Fz_N for each of several fingers) nor a log \
                         of photodiodes; name its columns so";
-            SkillError::recording(path, what)
+            LiveError::recording(path, what)
         }
         why => why.into(),
     })?;
     let Some(force) = log.forces.into_iter().find(|force| force.name == FORCE) else {
         let what = "has no normal force; name its column Fz_N, or FINGER.Fz_N for each of several fingers (pressing is \
                     negative)";
-        return Err(SkillError::recording(path, what));
+        return Err(LiveError::recording(path, what));
     };
     let one = Finger { name: finger.to_owned(), fz_n: force.values, gate: Vec::new(), angles: Vec::new(), own: None };
     Ok(Rows {
@@ -108,7 +108,7 @@ fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
     })
 }
 
-fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
+fn of_table(path: &Path, plain: &str) -> Result<Rows, LiveError> {
     let table = Table::read(path)?;
     let mut fingers: Vec<Finger> = Vec::new();
     let (mut angles_without_gate, mut notes) = (false, Vec::new());
@@ -117,7 +117,7 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
         let name = own.unwrap_or(plain).to_owned();
         if fingers.iter().any(|other| other.name == name) {
             let what = format!("two columns are the force of `{name}`; choose another --finger for {FORCE}");
-            return Err(SkillError::recording(path, &what));
+            return Err(LiveError::recording(path, &what));
         }
         let dotted = |column: &str| own.map_or(column.to_owned(), |own| format!("{own}.{column}"));
         let gate = [dotted(CONTACT), CONTACT.to_owned()].into_iter().find(|name| table.has(name));
@@ -144,7 +144,7 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
     }
     if fingers.len() > MOST_FINGERS {
         let what = format!("has forces of {} fingers; {MOST_FINGERS} are the most", fingers.len());
-        return Err(SkillError::recording(path, &what));
+        return Err(LiveError::recording(path, &what));
     }
     let texts = |name: &str| table.has(name).then(|| table.texts(name)).transpose();
     Ok(Rows {
@@ -189,17 +189,17 @@ fn force_near(name: &str) -> Option<String> {
 }
 
 /// The fingers of a table whose rows say whose they are, in the order in which they first appear.
-fn by_row(path: &Path, fingers: Vec<Finger>, whose: &[Option<String>]) -> Result<Vec<Finger>, SkillError> {
+fn by_row(path: &Path, fingers: Vec<Finger>, whose: &[Option<String>]) -> Result<Vec<Finger>, LiveError> {
     let Ok([plain]) = <[Finger; 1]>::try_from(fingers) else {
         let what = "says whose each row is (column `finger`) and has a force for each of several fingers; keep either";
-        return Err(SkillError::recording(path, what));
+        return Err(LiveError::recording(path, what));
     };
     let mut names: Vec<&String> = Vec::new();
     for name in whose.iter().flatten() {
         if !names.contains(&name) {
             if names.len() == MOST_FINGERS {
                 let what = format!("column `finger`: names more than {MOST_FINGERS} fingers");
-                return Err(SkillError::recording(path, &what));
+                return Err(LiveError::recording(path, &what));
             }
             names.push(name);
         }

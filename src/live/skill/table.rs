@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use super::SkillError;
 use super::report::{MEASURES, SkillFigures};
 use crate::files::Places;
+use crate::live::error::LiveError;
 use crate::table::{Column, TableWriter, Value};
 
 /// The table's name.
 pub(super) const TABLE: &str = "skill.csv";
 
 /// Writes the table.
-pub(super) fn write(figures: &SkillFigures, folder: &Path, places: &mut Places) -> Result<(), SkillError> {
+pub(super) fn write(figures: &SkillFigures, folder: &Path, places: &mut Places) -> Result<(), LiveError> {
     let path = folder.join(TABLE);
     let mut columns = ["subject", "trial", "recording", "finger"].map(Column::text).to_vec();
     columns.extend(["known_s", "unknown_s"].map(Column::number));

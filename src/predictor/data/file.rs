@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::RowOptions;
+use crate::job::At;
 use crate::log::ambient_step_of;
 use crate::stages::Step;
 
@@ -26,11 +27,25 @@ impl From<PathBuf> for DataFile {
     }
 }
 
+impl From<&At> for DataFile {
+    /// Called as the pipeline calls it; session and subject by its keys.
+    fn from(at: &At) -> Self {
+        let own = |key: &str| at.keys.get(key).map(str::to_owned);
+        Self { path: at.path.clone(), name: at.name.clone(), session: own("session"), subject: own("subject") }
+    }
+}
+
 impl DataFile {
     /// Files, each called as its path is written.
     #[must_use]
     pub fn of(paths: &[PathBuf]) -> Vec<Self> {
         paths.iter().cloned().map(Self::from).collect()
+    }
+
+    /// Who its rows are of, where it has no column that says it.
+    #[must_use]
+    pub fn person(&self) -> &str {
+        self.subject.as_ref().unwrap_or(&self.name)
     }
 
     /// The step of plans that says whether their ambient light is taken away.

@@ -3,18 +3,16 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use lunula_predictor::ForceSpaceFault;
-use thiserror::Error;
-
 use super::check::faults;
 use super::cone::draw_cone;
 use super::motion::Motion;
 use super::report::{ForceFigures, PostureFigures, TrajectoryFigures, TrajectoryReport};
 use super::{Kind, TrajectoryOptions, figures};
-use crate::files::{Places, WriteError, beside};
-use crate::job::{Interrupted, Outputs, Report, Watch};
+use crate::files::{Places, beside};
+use crate::job::{Outputs, Report, Watch};
+use crate::predictor::error::PredictorError;
 use crate::stages::{Stages, Step, left_out};
-use crate::table::{Column, TableError, TableFormat, TableWriter, Value};
+use crate::table::{Column, TableFormat, TableWriter, Value};
 
 /// Decimals of forces (a transducer's step is 0.0008 N) and of angles.
 const FORCE_DECIMALS: usize = 6;
@@ -22,30 +20,14 @@ const ANGLE_DECIMALS: usize = 5;
 /// Rows between two looks at whether to stop.
 const AT_ONCE: usize = 1 << 20;
 
-/// Why there is no trajectory.
-#[derive(Debug, Error)]
-#[allow(missing_docs, reason = "the messages say it")]
-pub enum TrajectoryError {
-    #[error("{}", .0.join("; "))]
-    Options(Vec<String>),
-    #[error(transparent)]
-    Space(#[from] ForceSpaceFault),
-    #[error(transparent)]
-    Table(#[from] TableError),
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    #[error("stopped")]
-    Interrupted(#[from] Interrupted),
-}
-
 /// Plans a run; `outputs` may be open yet.
 ///
 /// # Errors
-/// [`TrajectoryError::Options`].
-pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Vec<Step>, TrajectoryError> {
+/// [`PredictorError::Request`].
+pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Vec<Step>, PredictorError> {
     let faults = faults(options);
     if !faults.is_empty() {
-        return Err(TrajectoryError::Options(faults));
+        return Err(PredictorError::Request(faults.join("; ")));
     }
     let force = options.is_force();
     let of_forces = |what: &str| if force { what.to_owned() } else { "only of forces".to_owned() };
@@ -72,12 +54,12 @@ pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Ve
 /// Runs the job; every result is in its place when it returns.
 ///
 /// # Errors
-/// [`TrajectoryError`] where there are no results.
+/// [`PredictorError`] where there are no results.
 pub fn run(
     options: &TrajectoryOptions,
     outputs: &Outputs,
     watch: &Watch<'_>,
-) -> Result<TrajectoryReport, TrajectoryError> {
+) -> Result<TrajectoryReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
     let steps = plan(options, Some(outputs))?;
@@ -161,7 +143,7 @@ fn write_table(
     path: &Path,
     places: &mut Places,
     watch: &Watch<'_>,
-) -> Result<(), TrajectoryError> {
+) -> Result<(), PredictorError> {
     let mut columns = vec![time_column(options.every_s)];
     match motion {
         Motion::Force(_) => columns.extend(["Fx_N", "Fy_N", "Fz_N"].map(|name| Column::rounded(name, FORCE_DECIMALS))),
@@ -196,7 +178,7 @@ fn draw(
     motion: &Motion,
     table: &Path,
     places: &mut Places,
-) -> Result<Vec<PathBuf>, TrajectoryError> {
+) -> Result<Vec<PathBuf>, PredictorError> {
     let kinds: &[&str] = match motion {
         Motion::Force(_) => &["force", "path", "cone"],
         Motion::Posture { .. } => &["posture"],

@@ -14,6 +14,6 @@ mod motion;
 mod options;
 mod report;
 
-pub use job::{TrajectoryError, plan, run};
+pub use job::{plan, run};
 pub use options::{BendingOptions, ForceOptions, Kind, KindOptions, RandomOptions, TrajectoryOptions};
 pub use report::{ForceFigures, PostureFigures, SpiralFigures, TrajectoryFigures, TrajectoryReport};

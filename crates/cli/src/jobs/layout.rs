@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lunula::job::{Given, Outputs, Said, Watch};
-use lunula::layout::{LayoutFigures, LayoutInput, LayoutInputs, LayoutOptions, LayoutReport, Method, plan, run};
+use lunula::layout::{LayoutFigures, LayoutInputs, LayoutOptions, LayoutReport, Method, plan, run};
+use lunula::predictor::DataFile;
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -37,10 +38,7 @@ pub(crate) struct LayoutArgs {
 
 impl LayoutArgs {
     fn inputs(&self) -> LayoutInputs {
-        LayoutInputs {
-            data: self.data.iter().cloned().map(LayoutInput::from).collect(),
-            positions: self.positions.clone(),
-        }
+        LayoutInputs { data: DataFile::of(&self.data), positions: self.positions.clone() }
     }
 }
 

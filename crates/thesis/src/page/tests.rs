@@ -11,13 +11,14 @@ use crate::film::tests::{pair, pressed};
 use crate::film::{film, rising};
 use crate::phantom::presses::{self, PressOptions};
 use crate::phantom::trials::trials;
-use crate::responses::{NamedFile, ResponsesOptions, responses};
+use crate::responses::{ResponsesOptions, responses};
 use crate::section::presses::{PressFile, read_presses};
 use crate::section::{section_presses, section_simulations};
 use lunula::hemodynamics::Pressed;
 use lunula::job::{Outputs, defaults, read};
 use lunula::live::performance::{self, PerformanceOptions};
 use lunula::phantom::nail::Pose;
+use lunula::predictor::DataFile;
 
 fn part(at: &Path, part: Part, subject: &str, files: &[(&str, &[u8])]) -> PartFolder {
     let folder = at.join(part.name()).join(subject);
@@ -162,7 +163,7 @@ fn every_quantity_of_the_statements_is_computed() {
         let cycle = |drive, range| {
             let path = at.join("recording.csv");
             cycled(&path, drive, range);
-            let files = [NamedFile { path, name: "recording.csv".to_owned() }];
+            let files = [DataFile { name: "recording.csv".to_owned(), ..path.into() }];
             let options = ResponsesOptions { drive: String::from(drive), bins: 16, places: Vec::new() };
             responses(&files, &options, folder, &Watch::nobody()).unwrap();
         };

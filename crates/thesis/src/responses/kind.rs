@@ -3,9 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use super::{NamedFile, ResponsesOptions, responses, steps};
+use super::{ResponsesOptions, responses, steps};
 use lunula::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use lunula::log::{LogReading, ReadingCost, ambient_step};
+use lunula::predictor::DataFile;
 use lunula::stages::Step;
 
 impl Job for ResponsesOptions {
@@ -46,8 +47,7 @@ impl Job for ResponsesOptions {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        let files: Vec<NamedFile> =
-            work.of("data").map(|at| NamedFile { path: at.path.clone(), name: at.name.clone() }).collect();
+        let files: Vec<DataFile> = work.of("data").map(DataFile::from).collect();
         let report = work.run(order.said, |watch| responses(&files, self, work.folder, watch))?;
         Ok(report.made(Vec::new()))
     }

@@ -33,6 +33,7 @@ pub(crate) use cycles::Cycles;
 use lunula::files::{Staging, WriteError};
 use lunula::job::{Interrupted, Report, Watch};
 use lunula::log::LogError;
+use lunula::predictor::DataFile;
 use lunula::stages::{Stages, Step, left_out};
 use lunula::table::TableError;
 pub(crate) use places::Places;
@@ -78,15 +79,6 @@ fn steps(options: &ResponsesOptions) -> Vec<Step> {
         Step::new("averages", true, "over cycles, rising and falling".to_owned()),
         Step::new("coupling", bends, coupling.to_owned()),
     ]
-}
-
-/// A recording's file, and what results may call it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct NamedFile {
-    /// Where it is.
-    pub(crate) path: PathBuf,
-    /// Its name in results.
-    pub(crate) name: String,
 }
 
 /// What came out.
@@ -148,7 +140,7 @@ pub(crate) enum ResponsesError {
 /// # Errors
 /// [`ResponsesError`].
 pub(crate) fn responses(
-    files: &[NamedFile],
+    files: &[DataFile],
     options: &ResponsesOptions,
     out: &Path,
     watch: &Watch<'_>,
@@ -165,7 +157,7 @@ pub(crate) fn responses(
         return Err(ResponsesError::Request(format!("bins = {}: choose 4 to 200", options.bins)));
     }
     let places = options.places().map_err(|why| ResponsesError::Request(format!("places: {why}")))?;
-    let read = |file: &NamedFile| Recording::read(&file.path, &file.name, &options.drive);
+    let read = |file: &DataFile| Recording::read(&file.path, &file.name, &options.drive);
     let recordings = stages.time("read", || files.iter().map(read).collect::<Result<Vec<_>, _>>())?;
     watch.go_on()?;
     let averages = stages.time("average", || Averages::of(&recordings, options))?;

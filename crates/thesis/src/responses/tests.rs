@@ -26,7 +26,7 @@ fn run(cycles: f64, options: &ResponsesOptions) -> (tempfile::TempDir, Result<Re
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lateral.csv");
     recording(&path, cycles);
-    let files = [NamedFile { path, name: "lateral.csv".to_owned() }];
+    let files = [DataFile { name: "lateral.csv".to_owned(), ..path.into() }];
     let found = responses(&files, options, &folder.path().join("out"), &Watch::nobody());
     (folder, found)
 }

@@ -10,7 +10,7 @@ mod train;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::job::{At, Demand, Foreseen, Outputs, Quality, Work};
+use crate::job::{Demand, Foreseen, Outputs, Quality, Work};
 use crate::predictor::data::DataFile;
 use crate::predictor::merit::figures::Merit;
 use crate::predictor::options::target::Target;
@@ -24,13 +24,9 @@ fn outputs(folder: &Path, demand: &Demand) -> Outputs {
     Outputs { rows: demand.wants(ROWS), ..demand.outputs(folder) }
 }
 
-/// The recordings of a role as results call them: by the pipeline's name, subject and session by its keys.
+/// The recordings of a role.
 fn data_files(work: &Work<'_>, role: &str) -> Vec<DataFile> {
-    let file = |at: &At| {
-        let own = |key: &str| at.keys.get(key).map(str::to_owned);
-        DataFile { path: at.path.clone(), name: at.name.clone(), session: own("session"), subject: own("subject") }
-    };
-    work.of(role).map(file).collect()
+    work.of(role).map(DataFile::from).collect()
 }
 
 /// Foreseen recordings of a role.

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use anyhow::ensure;
 use clap::Args;
 use lunula::job::{Given, Outputs, Said, Watch};
-use lunula::live::skill::{
-    FingerSpread, SkillFigures, SkillInputs, SkillOptions, SkillRecording, SkillReport, plan, run,
-};
+use lunula::live::skill::{FingerSpread, SkillFigures, SkillInputs, SkillOptions, SkillReport, plan, run};
+use lunula::predictor::DataFile;
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -62,13 +61,10 @@ impl SkillArgs {
             subjects == 0 || subjects == recordings,
             "--subject: {subjects} names for {recordings} recordings; write one for each, with commas between them"
         );
-        let one = |(k, path): (usize, &PathBuf)| SkillRecording {
-            subject: self.subject.get(k).cloned(),
-            ..SkillRecording::of(path.clone())
-        };
+        let one = |(k, file)| DataFile { subject: self.subject.get(k).cloned(), ..file };
         Ok(SkillInputs {
-            recordings: self.recordings.iter().enumerate().map(one).collect(),
-            reference: self.reference.clone().map(SkillRecording::of),
+            recordings: DataFile::of(&self.recordings).into_iter().enumerate().map(one).collect(),
+            reference: self.reference.clone().map(DataFile::from),
         })
     }
 }
