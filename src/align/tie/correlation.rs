@@ -104,7 +104,7 @@ pub(crate) fn by_correlation(posture: &Posture, samples: &Samples, options: LagT
 }
 
 /// How much faster the log's clock runs by the lags of both halves, and its standard error.
-fn drift_by(found: &Correlated) -> Option<[f64; 2]> {
+pub(super) fn drift_by(found: &Correlated) -> Option<[f64; 2]> {
     let [first, second] = found.halves?;
     let apart_s = second.middle_s - first.middle_s;
     let sd_s = first.offset_sd_s.hypot(second.offset_sd_s).hypot(LAG_SD_S);
