@@ -23,8 +23,11 @@ const LAGS_S: [f64; 2] = [-0.3, 0.45];
 /// Where they seem to answer so long before it, seconds, the tie is doubtful even so (measured at right ties of seven
 /// phantoms: -0.10 at least).
 const EARLY_S: f64 = -0.2;
-/// Forces are taken off as they are and as lags of so many seconds have them.
-const FORCES_TAU_S: [f64; 3] = [0.0, 0.15, 0.5];
+/// Photodiodes follow a force by a lag of so many seconds, of first order; a force that varies by less (standard
+/// deviation, newtons) is of a finger that does not press. Of lags of 0 to 0.5 s and their products this one left most
+/// ties that are off to be seen (`how_many_pairs_are_warned_of`).
+const FORCE_TAU_S: f64 = 0.3;
+const PRESSES_N: f64 = 0.02;
 /// The lag is looked for so far away, seconds; it is off, or changes, where it does by so many standard errors. A change
 /// of less over what is compared does not matter, seconds. Of 84 phantoms of 60 s at their own ties: at most 2.6, -0.13 s.
 const AWAY_S: f64 = 1.5;
@@ -245,23 +248,26 @@ impl Near {
     }
 }
 
-/// Takes off the channels what a polynomial of the forces explains, as they are and as they were a little before:
-/// first and third powers, and products of two.
+/// Takes off the channels what the forces explain: a polynomial of them, of first and third powers and products of two,
+/// and what they were a little before.
 fn without_forces(time_s: &[f64], channels: &mut [Vec<f64>], forces: &[Vec<f64>]) {
     let rows = forces.first().map_or(0, Vec::len);
     let known: Vec<usize> =
         (0..rows).filter(|&row| forces.iter().chain(channels.iter()).all(|column| column[row].is_finite())).collect();
-    let behind = |tau_s: f64| forces.iter().map(|force| late(time_s, force, tau_s)).collect::<Vec<_>>();
-    let copies: Vec<Vec<Vec<f64>>> = FORCES_TAU_S.map(behind).into();
+    let forces: Vec<&Vec<f64>> = forces.iter().filter(|force| sd(force) >= PRESSES_N).collect();
+    let behind: Vec<Vec<f64>> = forces.iter().map(|force| late(time_s, force)).collect();
     let terms = |row: &usize| {
-        let of = |forces: &Vec<Vec<f64>>| {
-            let f: Vec<f64> = forces.iter().map(|force| force[*row]).collect();
-            let products = (0..f.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| f[i] * f[j]);
-            f.iter().copied().chain(products).chain(f.iter().map(|f| f.powi(3))).collect::<Vec<f64>>()
-        };
-        copies.iter().flat_map(of).collect::<Vec<f64>>()
+        let f: Vec<f64> = forces.iter().map(|force| force[*row]).collect();
+        let products = (0..f.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| f[i] * f[j]);
+        let cubes = f.iter().map(|f| f.powi(3));
+        f.iter()
+            .copied()
+            .chain(products)
+            .chain(cubes)
+            .chain(behind.iter().map(|force| force[*row]))
+            .collect::<Vec<f64>>()
     };
-    let width = copies.len() * forces.len() * (forces.len() + 5) / 2;
+    let width = forces.len() * (forces.len() + 7) / 2;
     let design = Array2::from_shape_vec((known.len(), width), known.iter().flat_map(terms).collect());
     let design = design.expect("every row has as many terms");
     let measured = Array2::from_shape_fn((known.len(), channels.len()), |(k, channel)| channels[channel][known[k]]);
@@ -274,17 +280,17 @@ fn without_forces(time_s: &[f64], channels: &mut [Vec<f64>], forces: &[Vec<f64>]
     }
 }
 
-/// A column as a first-order lag of `tau_s` seconds has it; where it is missing, as before.
-fn late(time_s: &[f64], column: &[f64], tau_s: f64) -> Vec<f64> {
-    let first = column.iter().copied().find(|value| value.is_finite()).unwrap_or(f64::NAN);
+/// A force as it was a little before; where it is missing, as before.
+fn late(time_s: &[f64], force: &[f64]) -> Vec<f64> {
+    let first = force.iter().copied().find(|value| value.is_finite()).unwrap_or(f64::NAN);
     let mut last = (time_s.first().copied().unwrap_or_default(), first);
     let follow = |(&at_s, &value): (&f64, &f64)| {
-        let share = if tau_s > 0.0 { 1.0 - ((last.0 - at_s) / tau_s).exp() } else { 1.0 };
+        let share = 1.0 - ((last.0 - at_s) / FORCE_TAU_S).exp();
         last.1 += if value.is_finite() { share * (value - last.1) } else { 0.0 };
         last.0 = at_s;
         last.1
     };
-    time_s.iter().zip(column).map(follow).collect()
+    time_s.iter().zip(force).map(follow).collect()
 }
 
 /// The standard deviation of what is known.
