@@ -13,9 +13,6 @@ use super::{Given, Keys, OptionFault, Said, keys, read};
 use crate::stages::Step;
 use crate::video::Header;
 
-/// The part that the pictures are.
-const PICTURES: &str = "pictures";
-
 /// How many files a role takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {
@@ -61,6 +58,9 @@ pub struct Part {
 }
 
 impl Part {
+    /// The part that the pictures are.
+    pub const PICTURES: &str = "pictures";
+
     /// A part that is always made, by name and file.
     #[must_use]
     pub const fn new(name: &'static str, file: &'static str) -> Self {
@@ -76,7 +76,7 @@ impl Part {
     /// The pictures.
     #[must_use]
     pub const fn pictures(file: &'static str) -> Self {
-        Self::if_wanted(PICTURES, file)
+        Self::if_wanted(Self::PICTURES, file)
     }
 }
 
@@ -132,7 +132,7 @@ impl Demand {
     /// Whether pictures are needed.
     #[must_use]
     pub fn draws(&self) -> bool {
-        self.wants(PICTURES)
+        self.wants(Part::PICTURES)
     }
 }
 

@@ -90,7 +90,7 @@ impl Job for PostureJob {
     .revision(7);
 
     fn depends_on(&self, _said: &Said, demand: &Demand) -> serde_json::Value {
-        let made: Vec<&str> = [TRACKS, OVERLAY, "pictures"].into_iter().filter(|part| demand.wants(part)).collect();
+        let made: Vec<&str> = [TRACKS, OVERLAY, Part::PICTURES].into_iter().filter(|part| demand.wants(part)).collect();
         let options = self.options(demand, 1);
         json!({
             "joints": options.joints,
