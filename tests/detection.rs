@@ -5,7 +5,7 @@
 use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
 use imageproc::contours::{BorderType, find_contours};
 use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject, Tone};
-use lunula::photo::outline::{self, DetectOptions, Detected, Detections, NothingFound, Outline};
+use lunula::photo::outline::{self, Axis, DetectOptions, Detected, Detections, Moments, NothingFound, Outline, Unlike};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -35,7 +35,7 @@ fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
 }
 
 /// Extent of an outline along and across a direction.
-fn extents(outline: &Outline, axis: lunula::photo::outline::Axis) -> [f64; 2] {
+fn extents(outline: &Outline, axis: Axis) -> [f64; 2] {
     [axis.distal(), axis.right()].map(|d| {
         let along: Vec<f64> = outline.points().iter().map(|p| p[0] * d[0] + p[1] * d[1]).collect();
         along.iter().copied().fold(f64::NEG_INFINITY, f64::max) - along.iter().copied().fold(f64::INFINITY, f64::min)
@@ -303,6 +303,53 @@ mod real_data {
         eprintln!("{nails} nails, {found} found, {right:?} at IoU 0.5 and 0.7");
         assert!(right[0] as f64 >= PRECISION * f64::from(found), "{} of {found}", right[0]);
         assert!((0..2).all(|k| right[k] as f64 >= RECALL[k] * nails as f64), "{right:?} of {nails}");
+    }
+
+    /// Outlines of masks, moved by a share of their long axis in eight directions, or larger or smaller, and those of
+    /// the next photograph: what is seen elsewhere, and how often no nail is seen.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn outlines_drawn_beside_real_nails_are_seen() {
+        let folder = real_data("nail/vpapenko_cc0");
+        let mut files: Vec<_> =
+            std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().file_name()).collect();
+        files.sort();
+        let hands: Vec<(DynamicImage, Vec<Outline>)> = files
+            .iter()
+            .map(|file| {
+                let mask = image::open(folder.join("masks").join(file)).unwrap();
+                let photo = image::open(folder.join("images").join(file)).unwrap();
+                (photo, outline::outlines_from_mask(&mask).unwrap().nails)
+            })
+            .collect();
+        let changed = |nail: &Outline, k: usize, by: f64, times: f64| {
+            let moments = Moments::of(nail);
+            let away = Axis::from_clockwise_rad(k as f64 * std::f64::consts::FRAC_PI_4).distal();
+            let [x, y] = moments.centroid_px;
+            let moved = nail.points().into_iter().map(|p| {
+                let place = |k: usize, c: f64| c + times * (p[k] - c) + by * moments.major_px * away[k];
+                [place(0, x), place(1, y)]
+            });
+            Outline::new(&moved.collect::<Vec<_>>()).unwrap()
+        };
+        let mut shares = Vec::new();
+        for (by, times) in [(0.0, 1.0), (0.1, 1.0), (0.15, 1.0), (0.2, 1.0), (0.0, 0.75), (0.0, 1.25)] {
+            let [mut nails, mut elsewhere, mut nothing] = [0; 3];
+            for grey in [false, true] {
+                for (photo, outlines) in &hands {
+                    let photo = if grey { photo.grayscale() } else { photo.clone() };
+                    let drawn: Vec<Outline> =
+                        outlines.iter().enumerate().map(|(k, nail)| changed(nail, k, by, times)).collect();
+                    let seen = outline::unlike(&photo, &drawn.iter().collect::<Vec<_>>()).unwrap();
+                    nails += seen.len();
+                    elsewhere += seen.iter().filter(|one| matches!(one, Some(Unlike::Elsewhere(_)))).count();
+                    nothing += seen.iter().filter(|one| matches!(one, Some(Unlike::Nothing))).count();
+                }
+                eprintln!("moved by {by}, {times} times as large, grey {grey}: {nails}, {elsewhere}, {nothing}");
+            }
+            shares.push((elsewhere + nothing) as f64 / f64::from(nails as u32));
+        }
+        assert!(shares[0] <= 0.02 && shares[3] >= 0.8, "{shares:?}");
     }
 
     /// The largest nail of each photograph, enlarged to 190 px on at most 640 x 480.

@@ -561,13 +561,18 @@ fn rows_with_a_fault_of_the_sensor_have_no_voltage() {
     ramps(&dir);
     let mut set = "time_s,pf1_Pa,pf2_Pa,VP1,VP2,sensor_status\n".to_owned();
     for (k, row) in dir.table("r.csv").iter().enumerate() {
-        let (first, status) = if k % 10 == 3 { ("10", "saturated: VP1") } else { (row["VP1"].as_str(), "ok") };
+        let (first, status) = match k % 10 {
+            3 => ("10", "saturated: VP1"),
+            4 => (row["VP1"].as_str(), "loose"),
+            _ => (row["VP1"].as_str(), "ok"),
+        };
         set += &format!("{},{},{},{first},{},{status}\n", row["time_s"], row["pf1_Pa"], row["pf2_Pa"], row["VP2"]);
     }
     dir.write("set.csv", set);
     let report = run(&dir, "fit", "set.csv --free k_V --out f.json --no-figures --json").expect(0).json();
     assert!(report["r2"].number() > 0.999_999, "{}", report["r2"]);
     assert_eq!((&report["recordings"][0]["faults"], &report["recordings"][0]["missing"]), (&20.into(), &0.into()));
+    assert!(report["warnings"][0].words().contains("does not know in 20 rows, first `loose`"), "{report}");
 }
 
 #[test]

@@ -66,6 +66,22 @@ fn a_nail_that_comes_into_the_picture_is_found_then() {
     assert!(rows.iter().skip(1).all(|row| row["P1"].is_empty()), "{:?}", rows.get(1));
 }
 
+/// As one that was drawn on another frame, or on another video, is.
+#[test]
+fn an_outline_beside_the_nail_is_warned_of() {
+    let dir = Dir::new();
+    dir.words(&REST.replace("--seconds 6", "--seconds 1")).expect(0);
+    let right = dir.words(JOB).expect(0);
+    assert!(!right.stderr.contains("by the network"), "{}", right.stderr);
+    outline(&dir, "beside.json", |shapes| {
+        shapes.iter_mut().for_each(|shape| *shape = moved(shape, |[x, y]| [x + 20.0, y]));
+    });
+    dir.words(&JOB.replace("s/outline.json", "beside.json"))
+        .expect(0)
+        .says("beside.json: the nail is seen 0.2")
+        .says("widths further left on frame 0, by the network");
+}
+
 /// What was seen, and the frame, are there for a person to correct; what is there already stays.
 #[test]
 fn without_a_nail_there_is_a_picture_to_draw_it_on() {

@@ -6,6 +6,7 @@ use lunula::labelme::LabelMe;
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{LightKind, write};
 
+use crate::util::desk::Desk;
 use crate::util::{Dir, drawn_axis, drawn_nail, drawn_outline, labelme, small_set};
 
 /// Eight close-ups, annotated; of all of them the picture is sure of its axis.
@@ -50,6 +51,43 @@ fn a_reversed_axis_is_doubted_unless_it_is_said_twice() {
     }
     dir.lunula(&["photos", "scene/photos", "--out", "out", "--distal", "down"]).expect(0);
     assert_eq!(left_out(&dir).1, 8);
+}
+
+/// The shapes of one close-up's file, moved along and across the finger, in pixels.
+fn shifted(dir: &Dir, subject: usize, by: [f64; 2]) {
+    let path = dir.path(&format!("scene/photos/nominal/s0{subject}.json"));
+    let mut file = LabelMe::read(&path).expect("LabelMe");
+    let all = file.shapes.iter_mut().flat_map(|shape| &mut shape.points);
+    all.for_each(|point| (0..2).for_each(|k| point[k] += by[k]));
+    file.write(&path).expect("written");
+}
+
+#[test]
+fn outlines_drawn_beside_the_nail_are_warned_of_where_that_is_requested() {
+    let dir = close_ups();
+    let length_px = |row: usize| dir.table("out/nails.csv")[row]["length_px"].parse::<f64>().expect("a length");
+    let job = ["photos", "scene/photos", "--out", "out"];
+    let check = [&job[..], &["--check-outlines"]].concat();
+    let right = dir.lunula(&check).expect(0);
+    assert!(!right.stderr.contains("by the network"), "{}", right.stderr);
+    // A fifth of the length too far distal, which is up in these.
+    shifted(&dir, 3, [0.0, -0.2 * length_px(2)]);
+    let unasked = dir.lunula(&job).expect(0);
+    assert!(!unasked.stderr.contains("by the network"), "{}", unasked.stderr);
+    let plan = [&job[..], &["--plan"]].concat();
+    let plan = dir.lunula(&plan).expect(0);
+    assert!(plan.stdout.contains("--check-outlines looks at them"), "{}", plan.stdout);
+    let asked = dir.lunula(&check).expect(0);
+    asked
+        .says("1 of 8 outlines are not where the nail is: nominal/s03.png, nail 1 (the nail is seen 0.")
+        .says("proximal");
+    let desk = Desk::at(&dir.path("scene/photos"));
+    // The first photograph is shown while others are looked at.
+    assert_eq!(desk.sees()["nail"]["photo"], "nominal/s01.png");
+    desk.editor.key(br#"{"key":"next"}"#);
+    let nail = desk.sees()["nail"].clone();
+    assert_eq!(nail["photo"], "nominal/s03.png", "{nail}");
+    assert!(nail["why"].as_str().is_some_and(|why| why.contains("further proximal")), "{nail}");
 }
 
 #[test]

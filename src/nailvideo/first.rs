@@ -11,7 +11,7 @@ use super::options::NailVideoOptions;
 use super::sample::{Colours, Planes};
 use crate::labelme::LabelMe;
 use crate::nail::Outline;
-use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file};
+use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file, unlike};
 use crate::photo::{Hues, Mistaken, NailFrame, Photograph};
 use crate::photograph::{PICTURES, is_picture};
 use crate::video::{Frame, Info};
@@ -32,6 +32,8 @@ pub(in crate::nailvideo) struct FirstNail {
     pub(in crate::nailvideo) confidence: Option<f64>,
     /// What its channels, and those of the skin below it, seem to be.
     pub(in crate::nailvideo) mistaken: Option<Mistaken>,
+    /// What the network sees instead of a drawn outline, in words.
+    pub(in crate::nailvideo) instead: Option<String>,
 }
 
 impl FirstNail {
@@ -50,7 +52,7 @@ impl FirstNail {
 }
 
 /// A key of LabelMe files that are written here: the frame that they are drawn on, where that is not the first one.
-const DRAWN_ON: &str = "lunulaFrame";
+pub(in crate::nailvideo) const DRAWN_ON: &str = "lunulaFrame";
 
 /// Nails as a LabelMe file of a frame's picture beside it.
 pub(in crate::nailvideo) fn labelme(
@@ -141,8 +143,13 @@ impl Finder {
         };
         let seen = to_draw(&listed.nails);
         let found = one_of(listed.nails, [picture.image.width(), picture.image.height()]);
-        let found = found.map(|nail| FirstNail { mistaken: Hues::of(&picture.image, &nail.frame).mistaken, ..nail });
-        found.map_err(|why| NotOne { why, seen })
+        let nail = found.map_err(|why| NotOne { why, seen })?;
+        let is_drawn = nail.source != Source::Detected;
+        let drawn: Vec<&Outline> = is_drawn.then_some(&nail.outline).into_iter().collect();
+        let seen = unlike(&picture.image, &drawn);
+        let seen = seen.map_err(|why| NotOne { why: why.to_string(), seen: Vec::new() })?.pop().flatten();
+        let instead = seen.map(|seen| nail.frame.instead(&seen));
+        Ok(FirstNail { mistaken: Hues::of(&picture.image, &nail.frame).mistaken, instead, ..nail })
     }
 }
 
@@ -171,7 +178,7 @@ fn one_of(nails: Vec<Nail>, size: [u32; 2]) -> Result<FirstNail, String> {
     if let Some(doubt) = frame.doubt(&outline, size) {
         return Err(format!("of the nail: {doubt}"));
     }
-    Ok(FirstNail { outline, frame, source, confidence, mistaken: None })
+    Ok(FirstNail { outline, frame, source, confidence, mistaken: None, instead: None })
 }
 
 fn narrow(nail: &str, width_px: f64) -> String {

@@ -1,7 +1,8 @@
 //! What there is to correct on a photograph: its nails, who knows of them, and how much each is doubted.
 //!
 //! A photograph that nobody has annotated is searched as `lunula photos` does; an annotated one is not, but axes that
-//! nobody drew are looked for and drawn ones asked of the picture, as there.
+//! nobody drew are looked for and drawn ones asked of the picture, as there, and outlines of the network, as by
+//! `--check-outlines`.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ use crate::labelme::LabelMe;
 use crate::nail::{Axis, Outline};
 use crate::photo::outline::{
     DOUBTFUL, Labelled, Listed, Moments, NAIL, Nail, OutlinePlace, Source, SourceFault, Sources, ToDraw, hundredths,
-    labelled, mark_upright, relative, template, to_file,
+    labelled, mark_upright, relative, template, to_file, unlike,
 };
 use crate::photo::{NailFrame, Photo, PhotoSet, Photograph};
 use crate::stages::Step;
@@ -30,6 +31,8 @@ pub(super) enum Rank {
     Doubtful,
     /// Nothing was found: somebody has to draw it.
     Missing,
+    /// Drawn by somebody, and used; the network sees the nail elsewhere.
+    Elsewhere,
     /// Found by detection, and used.
     Detected,
     /// Drawn by somebody, and used.
@@ -105,13 +108,25 @@ fn of_file(home: &Path, picture: &Photograph, options: &EditOptions) -> Result<(
     let mut nails: Vec<Nail> = found.iter().map(|one| nail_of(&one.nail)).collect();
     options.outlines.complete_axes(picture, &mut nails);
     let is_doubtful = |one: &Labelled| file.shapes[one.polygon].label.trim().eq_ignore_ascii_case(DOUBTFUL);
-    let finds = found.iter().zip(nails).map(|(one, nail)| {
+    let drawn: Vec<&Outline> = nails.iter().filter_map(|nail| nail.outline.as_ref()).collect();
+    let mut unlike = unlike(&picture.image, &drawn).map_err(|why| why.to_string())?.into_iter();
+    let instead = nails.iter().map(|nail| {
+        let outline = nail.outline.as_ref()?;
+        let (seen, axis) = (unlike.next().flatten()?, nail.axis?);
+        Some(format!("{}, by the network that finds nails", NailFrame::new(outline, axis).ok()?.instead(&seen)))
+    });
+    let instead: Vec<Option<String>> = instead.collect();
+    let finds = found.iter().zip(nails).zip(instead).map(|((one, nail), instead)| {
         let mut why = nail.reason;
         if is_doubtful(one) && why.is_empty() {
             let remark = file.shapes[one.polygon].description.clone().filter(|text| !text.is_empty());
             why = remark.unwrap_or_else(|| format!("is labelled `{DOUBTFUL}`"));
         }
-        let rank = if why.is_empty() { Rank::Drawn } else { Rank::Doubtful };
+        let (rank, why) = match instead {
+            _ if !why.is_empty() => (Rank::Doubtful, why),
+            Some(instead) => (Rank::Elsewhere, instead),
+            None => (Rank::Drawn, why),
+        };
         let shapes = Shapes { polygon: Some(one.polygon), line: one.line };
         Find { rank, shapes, shape: shape_of(one, nail.axis, picture), why }
     });

@@ -21,6 +21,9 @@ pub struct PhotosOptions {
     /// where photos.csv has a column `tone`, each skin tone; needs colour photographs
     #[arg(long)]
     pub channels: bool,
+    /// Look at drawn outlines with the network that finds nails, and warn of those where it sees the nail elsewhere
+    #[arg(long)]
+    pub check_outlines: bool,
 }
 
 /// Where results go, and which are written.

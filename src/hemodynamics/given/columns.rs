@@ -60,6 +60,8 @@ pub(in crate::hemodynamics) struct Voltages {
     pub(in crate::hemodynamics) values_v: Vec<f64>,
     /// Rows in which the sensor had a fault: saturated, or without ambient light.
     pub(in crate::hemodynamics) faults: usize,
+    /// Rows whose status nobody knows are used.
+    pub(in crate::hemodynamics) warning: Option<String>,
 }
 
 impl Rows {
@@ -269,7 +271,7 @@ impl Rows {
                 })?;
             }
         }
-        let faults = without_faults(vec![(name, &mut values_v)], |take| match &self.from {
+        let (faults, unknown) = without_faults(vec![(name, &mut values_v)], |take| match &self.from {
             Source::Log(lit) => {
                 lit.samples.faults.iter().enumerate().for_each(|(row, fault)| take(row, fault));
                 Ok(())
@@ -277,7 +279,7 @@ impl Rows {
             Source::Table(table) if table.has("sensor_status") => table.each_text("sensor_status", take),
             Source::Table(_) => Ok(()),
         })?;
-        Ok(Voltages { values_v, faults: faults[0] })
+        Ok(Voltages { values_v, faults: faults[0], warning: unknown.warning() })
     }
 }
 

@@ -181,47 +181,51 @@ impl Source {
         let known = columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..]));
         let doubts = doubts::table(table.names(), known);
         let warnings = doubts.iter().map(|doubt| placed(input, doubt)).collect();
-        let mut notes = Vec::new();
+        let names = table.names().to_vec();
+        let mut source = Self { names, time_s, columns, subject, notes: Vec::new(), warnings };
         if table.has("sensor_status") {
-            notes.extend(faults(&mut columns, input, |take| table.each_text("sensor_status", take))?);
+            source.without_faults(input, |take| table.each_text("sensor_status", take))?;
         }
-        Ok(Self { names: table.names().to_vec(), time_s, columns, subject, notes, warnings })
+        Ok(source)
     }
 
     fn of_log(input: &DataFile, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let lit = options.log.lit_rows(&input.path)?;
-        let mut notes: Vec<String> =
-            lit.notes.iter().chain(&lit.samples.notes).map(|note| placed(input, note)).collect();
+        let notes: Vec<String> = lit.notes.iter().chain(&lit.samples.notes).map(|note| placed(input, note)).collect();
         let warnings = lit.samples.warnings.iter().map(|warning| placed(input, warning)).collect();
         let channels = lit.samples.photodiodes.into_iter().chain(lit.samples.forces);
         let columns: Vec<_> = channels.map(|channel| (channel.name, channel.values)).collect();
         let names = columns.iter().map(|(name, _)| name.clone()).collect();
         let subject = vec![input.person().to_owned(); lit.samples.time_s.len()];
-        let mut columns = columns.into_iter().collect();
-        notes.extend(faults(&mut columns, input, |take| {
+        let columns = columns.into_iter().collect();
+        let mut source = Self { names, time_s: lit.samples.time_s, columns, subject, notes, warnings };
+        source.without_faults(input, |take| {
             lit.samples.faults.iter().enumerate().for_each(|(row, fault)| take(row, fault));
             Ok(())
-        })?);
-        Ok(Self { names, time_s: lit.samples.time_s, columns, subject, notes, warnings })
+        })?;
+        Ok(source)
     }
-}
 
-/// Takes away the readings of photodiodes in rows in which the sensor had a fault; what to say of them.
-fn faults(
-    columns: &mut BTreeMap<String, Vec<f64>>,
-    input: &DataFile,
-    each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), TableError>,
-) -> Result<Option<String>, TableError> {
-    let photodiodes: Vec<(&str, &mut [f64])> = columns
-        .iter_mut()
-        .filter(|(name, _)| is_photodiode(name))
-        .map(|(name, values)| (name.as_str(), &mut values[..]))
-        .collect();
-    let names: Vec<String> = photodiodes.iter().map(|(name, _)| (*name).to_owned()).collect();
-    let counts = names.iter().zip(without_faults(photodiodes, each)?).filter(|(_, rows)| *rows > 0);
-    let counts: Vec<String> = counts.map(|(name, rows)| format!("{name} in {rows} rows")).collect();
-    let said = || placed(input, &format!("not read where saturated or without ambient light: {}", counts.join(", ")));
-    Ok((!counts.is_empty()).then(said))
+    /// Takes away the readings of photodiodes in rows in which the sensor had a fault, and says so.
+    fn without_faults(
+        &mut self,
+        input: &DataFile,
+        each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), TableError>,
+    ) -> Result<(), TableError> {
+        let photodiodes = self.columns.iter_mut().filter(|(name, _)| is_photodiode(name));
+        let photodiodes: Vec<(&str, &mut [f64])> =
+            photodiodes.map(|(name, values)| (name.as_str(), &mut values[..])).collect();
+        let names: Vec<String> = photodiodes.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let (faults, unknown) = without_faults(photodiodes, each)?;
+        let counts = names.iter().zip(faults).filter(|(_, rows)| *rows > 0);
+        let counts: Vec<String> = counts.map(|(name, rows)| format!("{name} in {rows} rows")).collect();
+        if !counts.is_empty() {
+            let what = format!("not read where saturated or without ambient light: {}", counts.join(", "));
+            self.notes.push(placed(input, &what));
+        }
+        self.warnings.extend(unknown.warning().map(|warning| placed(input, &warning)));
+        Ok(())
+    }
 }
 
 fn placed(input: &DataFile, what: &str) -> String {

@@ -56,23 +56,56 @@ impl Statuses {
     }
 }
 
+/// Rows whose status says something else.
+#[derive(Debug, Default)]
+pub(crate) struct Unknown {
+    rows: usize,
+    first: String,
+}
+
+impl Unknown {
+    pub(crate) fn add(&mut self, status: &str) {
+        if self.rows == 0 {
+            status.clone_into(&mut self.first);
+        }
+        self.rows += 1;
+    }
+
+    /// What whoever uses the rows should know.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let Self { rows, first } = self;
+        (*rows > 0).then(|| {
+            format!(
+                "`sensor_status` says something that lunula does not know in {rows} rows, first `{first}`; they are used"
+            )
+        })
+    }
+}
+
 /// Takes photodiodes' values away in the rows whose status, of which `each` says row and text, warns of them; in how
 /// many rows of each.
 pub(crate) fn without_faults<E>(
     photodiodes: Vec<(&str, &mut [f64])>,
     each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), E>,
-) -> Result<Vec<usize>, E> {
+) -> Result<(Vec<usize>, Unknown), E> {
+    let mut unknown = Unknown::default();
     let of = |(name, values)| (Statuses::new(&[str::to_owned(name)]), values, 0);
     let mut all: Vec<(Statuses, &mut [f64], usize)> = photodiodes.into_iter().map(of).collect();
     each(&mut |row, status| {
+        let mut is_known = true;
         for (statuses, values, faults) in &mut all {
-            if statuses.read(status) == Verdict::Fault {
+            let verdict = statuses.read(status);
+            is_known &= verdict != Verdict::Unknown;
+            if verdict == Verdict::Fault {
                 values[row] = f64::NAN;
                 *faults += 1;
             }
         }
+        if !is_known {
+            unknown.add(status);
+        }
     })?;
-    Ok(all.into_iter().map(|(.., faults)| faults).collect())
+    Ok((all.into_iter().map(|(.., faults)| faults).collect(), unknown))
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use crate::job::{Report, Watch};
 use crate::nail::Positions;
 use crate::nailvideo::affine::Affine;
 use crate::nailvideo::error::NailVideoError;
-use crate::nailvideo::first::{Finder, FirstNail, NotOne, labelme, upright};
+use crate::nailvideo::first::{DRAWN_ON, Finder, FirstNail, NotOne, labelme, upright};
 use crate::nailvideo::follow::{Follower, Lost, beyond_fine};
 use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
@@ -476,6 +476,13 @@ impl Job<'_> {
         if let Some([looks, done]) = nail.mistaken.map(Mistaken::words) {
             let first = report.frames.first;
             report.warnings.push(format!("{looks} on frame {first}: {done} Light is taken off by red"));
+        }
+        if let (Some(instead), Some(outline)) = (&nail.instead, &self.inputs.outline) {
+            let (path, first) = (outline.display(), report.frames.first);
+            report.warnings.push(format!(
+                "{path}: {instead} on frame {first}, by the network that finds nails: was it drawn on another frame \
+                 ({DRAWN_ON}) or another video? Photodiodes may lie on skin"
+            ));
         }
         report.warnings.extend(positions.in_one_quarter());
         for names in positions.at_one_place() {

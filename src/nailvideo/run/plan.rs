@@ -37,6 +37,11 @@ pub(in crate::nailvideo) fn steps(
             !outlined,
             if outlined { "an outline is given" } else { "no --outline" }.to_owned(),
         ),
+        Step::new(
+            "check the outline",
+            outlined,
+            if outlined { "by the network that finds nails, once" } else { "it is detected" }.to_owned(),
+        ),
         Step::new("follow", true, "by the nail's affine motion from the first good frame".to_owned()),
         Step::new(
             "take light off",

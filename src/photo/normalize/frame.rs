@@ -8,7 +8,7 @@
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Rect};
 use thiserror::Error;
 
-use crate::photo::outline::{Axis, Outline};
+use crate::photo::outline::{Axis, Outline, Unlike};
 
 /// The smallest box that can still be distinguished from a speck, pixels.
 pub const SMALLEST_EXTENT_PX: f64 = 4.0;
@@ -26,6 +26,8 @@ const GOES_ON: f64 = 0.5;
 /// than this (an oval of which less than a tenth is cut off, and a square one that touches).
 const WITHIN: f64 = 0.06;
 const GROWS: f64 = 0.8;
+/// Less of a move or a change of size is not worth a word (assumed).
+const SLIGHT: f64 = 0.05;
 
 /// Why an outline gives no frame.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -106,6 +108,24 @@ impl NailFrame {
                  where you know the rest, draw it beyond the edge"
             )
         })
+    }
+
+    /// What is seen instead of the outline that this is the box of, in words.
+    pub(crate) fn instead(&self, seen: &Unlike) -> String {
+        let Unlike::Elsewhere(outline) = seen else { return "no nail is seen there".to_owned() };
+        let other = Self::around(&outline.points(), self.axis);
+        let away = [0, 1].map(|k| other.center_px[k] - self.center_px[k]);
+        let along = |way: [f64; 2], unit_px: f64| (away[0] * way[0] + away[1] * way[1]) / unit_px;
+        let moved = [
+            (along(self.axis.distal(), self.length_px), ["lengths further distal", "lengths further proximal"]),
+            (along(self.axis.right(), self.width_px), ["widths further right", "widths further left"]),
+        ];
+        let moved = moved.into_iter().filter(|(by, _)| by.abs() >= SLIGHT);
+        let mut words: Vec<String> =
+            moved.map(|(by, [more, less])| format!("{:.2} {}", by.abs(), if by > 0.0 { more } else { less })).collect();
+        let times = ((other.length_px * other.width_px) / (self.length_px * self.width_px)).sqrt();
+        words.extend((times.ln().abs() >= SLIGHT).then(|| format!("{times:.2} times as large")));
+        format!("the nail is seen {}", if words.is_empty() { "in another shape".to_owned() } else { words.join(", ") })
     }
 
     /// What share of the box lies outside of a photograph of `width` x `height` pixels, 0 to 1.

@@ -18,7 +18,7 @@ pub(crate) use annotated::{Labelled, labelled, mark_upright, other_photograph};
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 #[doc(hidden)]
 pub use detect::training;
-pub use detect::{DetectOptions, Detected, Detections, Detector, NothingFound, detect, snap, template};
+pub use detect::{DetectOptions, Detected, Detections, Detector, NothingFound, Unlike, detect, snap, template, unlike};
 pub use keep::SavedOutlines;
 pub(super) use keep::{DetectedOutline, keep_outlines};
 pub(crate) use keep::{relative, to_draw};

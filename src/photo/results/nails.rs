@@ -41,6 +41,8 @@ pub struct NailRow {
     pub(in crate::photo) hues: Hues,
     /// By how much the picture sees the drawn axis slant, degrees clockwise, where that is much.
     pub(in crate::photo) slants_deg: Option<f64>,
+    /// What the network sees instead of the drawn outline, in words.
+    pub(in crate::photo) instead: Option<String>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
 }
@@ -60,6 +62,7 @@ impl NailRow {
             survey: None,
             hues: Hues::default(),
             slants_deg: nail.slants_deg,
+            instead: None,
             reason: String::new(),
         }
     }

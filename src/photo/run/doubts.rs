@@ -82,6 +82,21 @@ fn slanting(nails: &[Used]) -> Option<String> {
     ))
 }
 
+/// Nails that the network sees elsewhere than they are drawn.
+fn elsewhere(nails: &[Used]) -> Option<String> {
+    let such = nails.iter().filter_map(|nail| Some((&nail.photo.file, nail.row.number, nail.row.instead.as_ref()?)));
+    let such: Vec<String> = such.map(|(file, number, instead)| format!("{file}, nail {number} ({instead})")).collect();
+    (!such.is_empty()).then(|| {
+        format!(
+            "by the network that finds nails, {} of {} outlines are not where the nail is: {}; look at them with \
+             `lunula edit`",
+            such.len(),
+            nails.len(),
+            some(&such)
+        )
+    })
+}
+
 /// What there is to say.
 pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
     let nails: Vec<Used> = rows.iter().filter_map(|row| Used::of(set, row)).collect();
@@ -92,6 +107,7 @@ pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
         cut_off(&nails),
         linear(&nails),
         slanting(&nails),
+        elsewhere(&nails),
         folders(set),
     ];
     doubts.into_iter().flatten().chain(exchanged(&nails)).chain(misspelt(set)).collect()

@@ -23,8 +23,8 @@ use crate::photo::hues::Hues;
 use crate::photo::normalize::{MOST_AT_FULL_SCALE, NailFrame, Normalized, Normalizer, detail, normalized_or_why};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
-    DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, Source, SourceFault, keep_outlines,
-    other_photograph,
+    DetectedOutline, Listed, Nail, Outline, OutlinePlace, Refused, SavedOutlines, Source, SourceFault, keep_outlines,
+    other_photograph, unlike,
 };
 use crate::photo::results::{self, DrawnPhotograph, DrawnPose, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
@@ -324,10 +324,20 @@ impl Work<'_> {
         let mut found = if may_draw { nails.clone() } else { Vec::new() };
         done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
         let several = nails.len() > 1;
+        let drawn = nails.iter().filter(|nail| nail.source != Source::Detected);
+        let drawn: Vec<&Outline> = drawn.filter_map(|nail| nail.outline.as_ref()).collect();
+        let mut unlike = match self.options.check_outlines {
+            true => match self.stages.time("check outlines", || unlike(&picture.image, &drawn)) {
+                Ok(all) => all.into_iter(),
+                Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
+            },
+            false => Vec::new().into_iter(),
+        };
         let mut details = Vec::new();
         let Memory { normalizer, pictures, scratch, .. } = memory;
         for (number, nail) in (1..).zip(nails) {
             let mut row = NailRow::new(index, number, &nail);
+            let seen = nail.outline.as_ref().and_then(|_| unlike.next().flatten());
             let mut thumbnail = None;
             match self.one_nail(&picture, nail, &mut row, normalizer) {
                 Ok(normalized) => {
@@ -335,6 +345,7 @@ impl Work<'_> {
                     row.at_full_scale = normalized.at_full_scale(margin);
                     row.survey = Some(normalized.survey());
                     row.hues = row.frame.map(|frame| Hues::of(&picture.image, &frame)).unwrap_or_default();
+                    row.instead = row.frame.zip(seen).map(|(frame, seen)| frame.instead(&seen));
                     row.reason = partly(&normalized, row.at_full_scale, margin);
                     let is_large = row.frame.is_some_and(|frame| frame.width_px.min(frame.length_px) >= LEAST_SHARP_PX);
                     if row.source == Source::Detected && is_large {

@@ -119,6 +119,15 @@ pub(in crate::photo) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOpt
                 None => "detection finds its own".into(),
             },
         ),
+        Step::new(
+            "check outlines",
+            options.check_outlines && labelme + masks > 0,
+            match (options.check_outlines, labelme + masks) {
+                (true, drawn) => said(drawn, none_drawn),
+                (false, 0) => none_drawn.into(),
+                (false, _) => "--check-outlines looks at them with the network that finds nails".into(),
+            },
+        ),
         Step::new("channel", colour > 0, said(colour, "every photograph is grey")),
         Step::new(
             "sRGB curve undone",

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::columns::{cell, cells, listed, missing, other_grid, photodiodes};
 use super::{DataError, Wanted};
 use crate::flexion;
-use crate::log::{Channel, GROUPS, LitRows, Statuses, Verdict, doubts, time_not_read};
+use crate::log::{Channel, GROUPS, LitRows, Statuses, Unknown, Verdict, doubts, time_not_read};
 use crate::table::{Cell, Table, TableError};
 
 /// The rows of a file, all of them.
@@ -173,26 +173,14 @@ impl Source {
         each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), TableError>,
     ) -> Result<(), DataError> {
         let mut statuses = Statuses::new(&self.inputs);
-        let mut unknown: (usize, String) = (0, String::new());
+        let mut unknown = Unknown::default();
         let faulty = &mut self.faulty;
         each(&mut |row, status| match statuses.read(status) {
             Verdict::Sound => {}
             Verdict::Fault => faulty[row] = true,
-            Verdict::Unknown => {
-                if unknown.0 == 0 {
-                    unknown.1 = status.to_owned();
-                }
-                unknown.0 += 1;
-            }
+            Verdict::Unknown => unknown.add(status),
         })?;
-        if unknown.0 > 0 {
-            let (rows, status) = unknown;
-            let path = self.path.display();
-            self.warnings.push(format!(
-                "{path}: `sensor_status` says something that lunula does not know in {rows} rows, first `{status}`; \
-                 they are used"
-            ));
-        }
+        self.warnings.extend(unknown.warning().map(|warning| format!("{}: {warning}", self.path.display())));
         Ok(())
     }
 }

@@ -145,10 +145,13 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     let photodiodes = photodiodes::of(names, &columns.photodiodes, units).map_err(refused)?;
     let mut traces = Vec::new();
     let (mut missing, mut faults) = (0, 0);
+    let mut unknown = None;
     for one in &photodiodes {
         let voltages = rows.voltages(&one.name)?;
         faults += voltages.faults;
         missing += voltages.values_v.iter().filter(|value| value.is_nan()).count() - voltages.faults;
+        // The same rows for every photodiode.
+        unknown = voltages.warning;
         traces.push(Trace::new(one.unit, voltages.values_v));
     }
     let mut times_s = read.get(TIME).map(<[f64]>::to_vec);
@@ -182,6 +185,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut warnings = rows.warnings().to_vec();
+    warnings.extend(unknown);
     warnings.extend(times_s.as_deref().and_then(doubts::time).filter(|_| !rows.is_log()));
     warnings.extend(match &force {
         Some(force) => signs::of_force(force.name, read.get(force.name).unwrap_or_default(), rows.is_log()),

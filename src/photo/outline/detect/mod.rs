@@ -40,6 +40,7 @@ use crate::vision::VisionError;
 use candidate::{Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
 use picture::Levels;
+pub use segment::Unlike;
 use segment::{NailNet, Segment, one_each};
 use shape::{OutlineShape, TAPER};
 
@@ -188,6 +189,14 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detection
             Ok(sorted_out(by_template(image, needed, options), [needed, shown]))
         }
     }
+}
+
+/// What the network surely sees instead of each outline that a person drew on an upright photograph, where it does.
+///
+/// # Errors
+/// [`VisionError`] where OpenCV fails.
+pub fn unlike(image: &DynamicImage, outlines: &[&Outline]) -> Result<Vec<Option<Unlike>>, VisionError> {
+    if outlines.is_empty() { Ok(Vec::new()) } else { NailNet::committed()?.unlike(image, outlines) }
 }
 
 /// By this network.

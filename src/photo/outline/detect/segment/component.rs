@@ -156,7 +156,7 @@ fn mean(values: impl Iterator<Item = f32>) -> f64 {
 }
 
 /// Bounded, that no probability decides alone.
-fn log_odds(probability: f64) -> f64 {
+pub(super) fn log_odds(probability: f64) -> f64 {
     let p = probability.clamp(0.01, 0.99);
     (p / (1.0 - p)).ln()
 }

@@ -7,12 +7,15 @@
 //!
 //! - *First look*: the whole photograph in several sizes; of components that overlap, the best one stays.
 //! - *Second look*: a window around each, in which it is 40 pixels long. Both together give the probability.
+//!   Outlines that a person drew are looked at so as well, where that is requested ([`unlike`]).
 //!
 //! `crates/training/nail-net` makes weights and calibration, and its `find.py` is this file's twin. Not determined:
 //! which end is distal.
 
 mod component;
+mod unlike;
 
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use image::{DynamicImage, RgbImage};
@@ -21,6 +24,8 @@ use super::candidate::shared;
 use crate::photo::outline::{Outline, Refusal, Refused};
 use crate::vision::{Network, VisionError, part_resized, resized};
 use component::{Component, View};
+
+pub use unlike::Unlike;
 
 /// Long sides that a photograph is looked at in, pixels.
 const SIDES: [usize; 3] = [128, 256, 512];
@@ -126,14 +131,7 @@ impl NailNet {
     /// # Errors
     /// [`VisionError`].
     pub fn segments(&self, image: &DynamicImage) -> Result<(Vec<Segment>, Vec<Refused>), VisionError> {
-        let converted: RgbImage;
-        let rgb = match image {
-            DynamicImage::ImageRgb8(rgb) => rgb,
-            other => {
-                converted = other.to_rgb8();
-                &converted
-            }
-        };
+        let rgb = &*colours(image);
         let (mut found, mut refused) = (Vec::new(), Vec::new());
         for first in self.candidates(rgb)? {
             match self.look_again(rgb, &first)? {
@@ -188,24 +186,28 @@ impl NailNet {
     /// The second look; `None` where the nail isn't seen again.
     fn look_again(&self, rgb: &RgbImage, first: &Candidate) -> Result<Option<Segment>, VisionError> {
         let one = &first.component;
-        let scale = SECOND_LENGTH * one.scale / one.length;
+        let seen = self.look_at(rgb, one.centre, one.length / one.scale)?;
+        let best = overlapping(&one.outline, seen).filter(|(iou, _)| *iou > 0.0);
+        Ok(best
+            .map(|(iou, second)| Segment { confidence: self.confidence(first, &second, iou), outline: second.outline }))
+    }
+
+    /// What is seen in a window in which what is so long, photograph pixels, has [`SECOND_LENGTH`].
+    fn look_at(&self, rgb: &RgbImage, centre: [f64; 2], length_px: f64) -> Result<Vec<Component>, VisionError> {
+        let scale = SECOND_LENGTH / length_px;
         let half = 0.5 * WINDOW / scale;
-        let [low, high] = [-half, half].map(|reach| one.centre.map(|c| (c + reach).round_ties_even().max(0.0) as u32));
+        let [low, high] = [-half, half].map(|reach| centre.map(|c| (c + reach).round_ties_even().max(0.0) as u32));
         let end = [rgb.width(), rgb.height()];
         let high = [0, 1].map(|k| high[k].max(low[k] + 1).min(end[k]));
         let part = [0, 1].map(|k| high[k].saturating_sub(low[k]));
         if part.contains(&0) {
-            return Ok(None);
+            return Ok(Vec::new());
         }
         let [corner, part, whole] = [low, part, end].map(|sides| sides.map(|n| n as usize));
         let part = part.map(|n| if n >= EVEN_FROM { n / EVEN * EVEN } else { n });
         let size = part.map(|n| ((n as f64 * scale).round_ties_even() as usize).max(1));
         let view = View { rgb: part_resized(rgb, whole, [corner, part], size)?, size, corner, part };
-        let seen = view.components(&self.network.answer(&view.planes())?)?;
-        let stayed = seen.into_iter().map(|second| (one.outline.iou(&second.outline), second));
-        let best = stayed.filter(|(iou, _)| *iou > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(best
-            .map(|(iou, second)| Segment { confidence: self.confidence(first, &second, iou), outline: second.outline }))
+        view.components(&self.network.answer(&view.planes())?)
     }
 
     fn confidence(&self, first: &Candidate, second: &Component, stayed: f64) -> f64 {
@@ -224,6 +226,19 @@ impl NailNet {
         let [constant, weights @ ..] = &self.calibration;
         let sum: f64 = weights.iter().zip(features).map(|(weight, feature)| weight * feature).sum();
         probability(constant + sum)
+    }
+}
+
+/// The component that overlaps an outline most, and its IoU.
+fn overlapping(outline: &Outline, seen: Vec<Component>) -> Option<(f64, Component)> {
+    seen.into_iter().map(|one| (outline.iou(&one.outline), one)).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// A photograph as the network takes it.
+fn colours(image: &DynamicImage) -> Cow<'_, RgbImage> {
+    match image {
+        DynamicImage::ImageRgb8(rgb) => Cow::Borrowed(rgb),
+        other => Cow::Owned(other.to_rgb8()),
     }
 }
 
