@@ -81,22 +81,22 @@ impl Picture {
     fn new(image: &DynamicImage, part: [[usize; 2]; 2], step: usize) -> Self {
         let width = image.width() as usize;
         match image {
-            DynamicImage::ImageLuma8(p) => Self::reduce(p.as_raw(), [width, 1], part, step, 255.0),
-            DynamicImage::ImageLumaA8(p) => Self::reduce(p.as_raw(), [width, 2], part, step, 255.0),
-            DynamicImage::ImageLuma16(p) => Self::reduce(p.as_raw(), [width, 1], part, step, 65535.0),
-            DynamicImage::ImageLumaA16(p) => Self::reduce(p.as_raw(), [width, 2], part, step, 65535.0),
-            DynamicImage::ImageRgb8(p) => Self::reduce(p.as_raw(), [width, 3], part, step, 255.0),
-            DynamicImage::ImageRgba8(p) => Self::reduce(p.as_raw(), [width, 4], part, step, 255.0),
-            DynamicImage::ImageRgb16(p) => Self::reduce(p.as_raw(), [width, 3], part, step, 65535.0),
-            DynamicImage::ImageRgba16(p) => Self::reduce(p.as_raw(), [width, 4], part, step, 65535.0),
-            other => Self::reduce(other.to_rgb16().as_raw(), [width, 3], part, step, 65535.0),
+            DynamicImage::ImageLuma8(p) => Self::reduce::<_, 1>(p.as_raw(), width, part, step, 255.0),
+            DynamicImage::ImageLumaA8(p) => Self::reduce::<_, 2>(p.as_raw(), width, part, step, 255.0),
+            DynamicImage::ImageLuma16(p) => Self::reduce::<_, 1>(p.as_raw(), width, part, step, 65535.0),
+            DynamicImage::ImageLumaA16(p) => Self::reduce::<_, 2>(p.as_raw(), width, part, step, 65535.0),
+            DynamicImage::ImageRgb8(p) => Self::reduce::<_, 3>(p.as_raw(), width, part, step, 255.0),
+            DynamicImage::ImageRgba8(p) => Self::reduce::<_, 4>(p.as_raw(), width, part, step, 255.0),
+            DynamicImage::ImageRgb16(p) => Self::reduce::<_, 3>(p.as_raw(), width, part, step, 65535.0),
+            DynamicImage::ImageRgba16(p) => Self::reduce::<_, 4>(p.as_raw(), width, part, step, 65535.0),
+            other => Self::reduce::<_, 3>(other.to_rgb16().as_raw(), width, part, step, 65535.0),
         }
     }
 
-    /// Logarithms of the means over `step x step` pixels of `samples` each, of a part: its corner and size.
-    fn reduce<T: Copy + Into<f32>>(
+    /// Logarithms of the means over `step x step` pixels of `SAMPLES` each, of a part: its corner and size.
+    fn reduce<T: Copy + Into<f32>, const SAMPLES: usize>(
         raw: &[T],
-        [width, samples]: [usize; 2],
+        width: usize,
         [corner, part]: [[usize; 2]; 2],
         step: usize,
         full: f32,
@@ -107,15 +107,16 @@ impl Picture {
         let log = |sum: f32| (sum * scale + FLOOR).ln();
         let table: Vec<f32> = (0..256u16).map(|v| log(f32::from(v))).collect();
         let is_in_table = step == 1 && full == 255.0;
+        let pixels = raw.as_chunks::<SAMPLES>().0;
         let mut cells: Vec<Cell> = Vec::with_capacity(size[0] * size[1]);
         let mut sums = vec![[0.0f32; 3]; size[0]];
         for y in 0..size[1] {
             sums.fill([0.0; 3]);
             for sub in 0..step {
                 let first = (corner[1] + y * step + sub) * width + corner[0];
-                let line = &raw[first * samples..][..size[0] * step * samples];
-                for (cell, block) in sums.iter_mut().zip(line.chunks_exact(step * samples)) {
-                    for pixel in block.chunks_exact(samples) {
+                let line = &pixels[first..][..size[0] * step];
+                for (cell, block) in sums.iter_mut().zip(line.chunks_exact(step)) {
+                    for pixel in block {
                         for (sum, value) in cell.iter_mut().zip(pixel) {
                             *sum += (*value).into();
                         }
@@ -123,7 +124,7 @@ impl Picture {
                 }
             }
             let sums = sums.iter();
-            if samples < 3 {
+            if SAMPLES < 3 {
                 cells.extend(sums.map(|s| [log(s[0]), 0.0, 0.0]));
             } else if is_in_table {
                 cells.extend(sums.map(|s| ratios(s.map(|v| table[v as usize]))));
@@ -132,7 +133,7 @@ impl Picture {
             }
         }
         let mean = |c: usize| cells.iter().map(|p| p[c].abs()).sum::<f32>() / cells.len().max(1) as f32;
-        let colour = samples >= 3 && (mean(RED) > GREY || mean(YELLOW) > GREY);
+        let colour = SAMPLES >= 3 && (mean(RED) > GREY || mean(YELLOW) > GREY);
         if !colour {
             cells.iter_mut().for_each(|p| *p = [p[TONE], 0.0, 0.0]);
         }
