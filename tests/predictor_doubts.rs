@@ -265,4 +265,31 @@ fn mismatches_of_phantom_logs() {
     }
     println!("exchanges and signs {} of {}, gains {} of {}, wrong {wrong}", found[0], made[0], found[1], made[1]);
     assert!(false_ones == 0 && wrong == 0);
+    for by_deg in [20.0_f64, 30.0, 45.0, 90.0, 180.0] {
+        let (sin, cos) = by_deg.to_radians().sin_cos();
+        let (mut found, mut all) = (0, 0);
+        for ((a, ..), (b, ..)) in pairs().filter(|(a, b)| (a.1, a.2) == (b.1, b.2)) {
+            let turn = |cells: &mut [String]| {
+                let [x, y] = [10, 11].map(|k| cells[k].parse::<f64>().unwrap_or(0.0));
+                (cells[10], cells[11]) = ((cos * x - sin * y).to_string(), (sin * x + cos * y).to_string());
+            };
+            write_changed(&dir, &format!("{b}/log.csv"), "b.csv", &turn);
+            all += 1;
+            found +=
+                usize::from(said(&format!("{a}/log.csv"), "b.csv").is_some_and(|said| said.contains("look turned")));
+        }
+        println!("Fx and Fy turned by {by_deg} degrees: {found} of {all}");
+    }
+    let mut apart = [[0; 2]; 2];
+    for ((a, ..), (b, ..)) in pairs().filter(|(a, b)| a.1 == b.1) {
+        let targets = ["Fx_N", "Fy_N", "Fz_N"].map(str::to_owned).to_vec();
+        let wanted = Wanted { targets, ..Wanted::default() };
+        let files = [a, b].map(|one| dir.path(&format!("{one}/log.csv")));
+        let read = read_data(&files, &wanted).expect("two logs");
+        let is_same = usize::from(a.split('-').nth(1) == b.split('-').nth(1));
+        apart[is_same][0] += usize::from(read.warnings.iter().any(|one| one.contains("is that another finger")));
+        apart[is_same][1] += 1;
+    }
+    println!("as of several persons: {:?} of several, {:?} of one", apart[0], apart[1]);
+    assert_eq!(apart[1][0], 0);
 }

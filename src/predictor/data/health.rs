@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use lunula_predictor::{Dataset, Delay, Difference, Mismatch, Recording, delays, mismatches};
+use lunula_predictor::{Apart, Dataset, Delay, Difference, Mismatch, Recording, apart, delays, mismatches};
 use ndarray::{Axis, Slice};
 
 use super::blocks::TURNED;
@@ -153,10 +153,16 @@ pub(super) fn clocks(data: &Dataset) -> Option<String> {
 /// What to say of files, as ranges of rows, that contradict the others; `orders` are those of [`TURNED`], of cells.
 pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>], names: &[&str]) -> Vec<String> {
     let all = mismatches(data, parts, orders);
+    if all.is_empty() {
+        return of_several_persons(data, parts, names).into_iter().collect();
+    }
     let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
     let looks = |difference| match difference {
         Difference::Exchanged([a, b]) => format!("{} and {} look exchanged", columns[a], columns[b]),
         Difference::Ordered(order) => format!("the picture looks {}", TURNED[order]),
+        Difference::Turned { columns: [a, b], by_deg } => {
+            format!("{} and {} look turned by {:.0} degrees (mounted otherwise?)", columns[a], columns[b], by_deg.abs())
+        }
         Difference::Scaled { column, by } => match by {
             -2.0..-0.5 => {
                 // Of a nail that is alike on both sides it is the same.
@@ -187,6 +193,21 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
         )
     };
     named.iter().map(say).collect()
+}
+
+/// What to say where files that are not known to be several persons' are as different as these.
+fn of_several_persons(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Option<String> {
+    let [first, others @ ..] = data.recordings() else { return None };
+    if others.iter().any(|one| one.subject != first.subject) {
+        return None;
+    }
+    let Apart { part, target, times } = apart(data, parts)?;
+    Some(format!(
+        "one linear model of all files leaves {times:.1} times the error in {} that one of each file leaves, and fits {} \
+         worst: is that another finger, or were transducer or sensor mounted otherwise? Models are of one person",
+        data.targets()[target],
+        names[part]
+    ))
 }
 
 /// A number without the hundreds of zeros of one near 1e-300, or the sign of one that is 0.

@@ -216,7 +216,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         source::without_other_photodiodes(&mut sources);
     }
     agree(&sources)?;
-    let mut warnings = Vec::new();
+    let mut warnings = Vec::from_iter(lit_and_not(&sources));
     let inputs = sources[0].inputs.clone();
     let (mut files, mut parts) = (Vec::with_capacity(sources.len()), Vec::with_capacity(sources.len()));
     let mut recordings: Vec<Recording> = Vec::new();
@@ -303,6 +303,16 @@ pub fn read_inputs(path: &Path, inputs: &[String], rows: &RowOptions) -> Result<
     let x = Array2::from_shape_fn((source.rows(), inputs.len()), |(row, column)| source.x[column][row]);
     let Source { time_s, faulty, notes, .. } = source;
     Ok(Inputs { time_s, x, faulty, recordings, notes, warnings })
+}
+
+/// What to say where some logs have the column of the LED and others have lost it.
+fn lit_and_not(sources: &[Source]) -> Option<String> {
+    let [without, with] = [false, true].map(|lit| sources.iter().find(|source| source.is_lit == Some(lit)));
+    let [without, with] = [without?, with?].map(|source| source.path.display());
+    Some(format!(
+        "{without} has no column `led`, and {with} has: is the ambient light in the one, which is taken from the other? \
+         Give both as they were logged"
+    ))
 }
 
 /// Recordings that are there twice, under whatever names.

@@ -26,6 +26,8 @@ pub(super) struct Source {
     pub(super) invalid: Vec<bool>,
     /// Rows that `sensor_status` warns of.
     pub(super) faulty: Vec<bool>,
+    /// Whether the LED went on and off, so that ambient light was taken away; none: another program did, or a camera's.
+    pub(super) is_lit: Option<bool>,
     /// Session, subject and trajectory, and the first row that has them.
     pub(super) groups: Vec<(usize, [String; 3])>,
     /// How the ambient light of a raw log was taken away.
@@ -84,6 +86,7 @@ impl Source {
             y: values.collect(),
             invalid,
             faulty: vec![false; table.rows()],
+            is_lit: (!["sensor_status", "label_status", "P1_status"].into_iter().any(has)).then_some(false),
             groups: groups(&table)?,
             notes: Vec::new(),
             warnings: Vec::new(),
@@ -155,6 +158,7 @@ impl Source {
             y,
             invalid: vec![false; rows],
             faulty: vec![false; rows],
+            is_lit: wanted.rows.log.led_of(path),
             groups: Vec::new(),
             notes,
             warnings,

@@ -2,7 +2,8 @@
 //! agrees with a model on which column is which.
 //!
 //! In: a [`Dataset`] and its parts. Out: of each part the one column, or the two, that look exchanged, scaled or turned
-//! in sign beside the other parts ([`mismatches`]). In: recordings, and what a model makes of them with their inputs in
+//! in sign beside the other parts, or two forces that look measured along other axes ([`mismatches`]); and whether one
+//! model of all parts is much worse than one of each ([`apart`]). In: recordings, and what a model makes of them with their inputs in
 //! any order. Out: which two look exchanged ([`exchanged`]).
 //!
 //! A linear model (equations 10 to 13) of the other parts is tried on the part as it is and with each pair of columns
@@ -33,6 +34,13 @@ const LESS: f64 = 0.05;
 const RIVAL: f64 = 1.5;
 /// A sensor that is put on again changes its gains by less than this (assumed).
 const GAIN: f64 = 1.7;
+/// A transducer that is mounted again is turned by less, degrees (assumed).
+const TURN_DEG: f64 = 15.0;
+/// How targets that are forces, newtons along an axis each, are called at their end.
+const FORCE: &str = "_N";
+/// A model of all parts is much worse where it leaves this many times the error that one of each part leaves, which two
+/// paths or days of a phantom's finger never do (1.0 to 1.5 times of 56 pairs; two persons 1.1 to 2.3).
+const MUCH: f64 = 1.6;
 /// Of the inputs' variance: what keeps columns that depend on each other solvable.
 const LEAST: f64 = 1e-10;
 
@@ -43,6 +51,13 @@ pub enum Difference {
     Exchanged([usize; 2]),
     /// All inputs stand in the one of the orders that are looked for which is counted so.
     Ordered(usize),
+    /// Two forces are measured along axes that are turned so far, degrees from the first towards the second.
+    Turned {
+        /// Which.
+        columns: [usize; 2],
+        /// -180 to 180.
+        by_deg: f64,
+    },
     /// A column is so many times the others'.
     Scaled {
         /// Which.
@@ -90,12 +105,58 @@ pub fn mismatches(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>])
             (Difference::Scaled { column, by }, Difference::Scaled { column: same, by: back }) => {
                 column == same && is_gain(by * back)
             }
+            (Difference::Turned { columns, by_deg }, Difference::Turned { columns: same, by_deg: back }) => {
+                columns == same && !is_turn(by_deg + back)
+            }
             (one, other) => one == other || is_mirror_image(one, other),
         };
         let matters = (recorded - mended).max(recorded_back - mended_back) >= LESS;
         (agree && matters).then_some(Mismatch { part, difference, recorded, mended })
     };
     (0..parts.len()).filter(|&part| has_rows(&parts[part])).filter_map(differs).collect()
+}
+
+/// A part that one model of all parts fits worst, where that model is much worse than one of each part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Apart {
+    /// Its place among the parts.
+    pub part: usize,
+    /// The target, counted over targets, whose error grows most.
+    pub target: usize,
+    /// How many times the error of a model of its own that of the model of all is, RMS over all parts.
+    pub times: f64,
+}
+
+/// Whether one linear model of all parts, as ranges of rows, is much worse than one of each part, as it is of two
+/// persons. Nothing is said of parts with few rows for the inputs.
+#[must_use]
+pub fn apart(data: &Dataset, parts: &[Range<usize>]) -> Option<Apart> {
+    let inputs = data.inputs().len();
+    let large: Vec<usize> = (0..parts.len()).filter(|&part| parts[part].len() >= ROWS * (1 + inputs)).collect();
+    if inputs == 0 || inputs > INPUTS || large.len() < 2 {
+        return None;
+    }
+    let moments: Vec<Moments> = large.iter().map(|&part| Moments::of(data, &parts[part])).collect();
+    let mut all = Moments::none(data);
+    moments.iter().for_each(|one| all.add(one));
+    let model = all.model()?;
+    let own = moments.iter().map(Moments::model).collect::<Option<Vec<_>>>()?;
+    let left = |target: usize| {
+        let column = inputs + target;
+        let both = moments.iter().zip(&own).map(|(one, own)| {
+            [&model, own].map(|model| one.unexplained_of(&model[target], column) * one.at(column, column))
+        });
+        both.collect::<Vec<[f64; 2]>>()
+    };
+    let of_target = |target: usize| {
+        let left = left(target);
+        let [pooled, alone] = [0, 1].map(|k| left.iter().map(|both| both[k]).sum::<f64>());
+        let worst = large.iter().zip(&left).max_by(|a, b| (a.1[0] / a.1[1]).total_cmp(&(b.1[0] / b.1[1])))?;
+        let matters = pooled - alone >= LESS * all.at(inputs + target, inputs + target);
+        let times = (pooled / alone).sqrt();
+        (matters && times >= MUCH && times.is_finite()).then_some(Apart { part: *worst.0, target, times })
+    };
+    (0..data.targets().len()).filter_map(of_target).max_by(|a, b| a.times.total_cmp(&b.times))
 }
 
 /// The recordings that a model contradicts as they are, and does not with two columns exchanged. `answered`: the rows
@@ -189,6 +250,11 @@ fn is_mirror_image(one: Difference, other: Difference) -> bool {
     sign(one) && order(other) || order(one) && sign(other)
 }
 
+/// Whether a transducer that was mounted again is turned by less.
+fn is_turn(by_deg: f64) -> bool {
+    (TURN_DEG..360.0 - TURN_DEG).contains(&by_deg.rem_euclid(360.0))
+}
+
 /// Whether a sensor that was put on again may differ so much.
 fn is_gain(by: f64) -> bool {
     (1.0 / GAIN..GAIN).contains(&by)
@@ -199,6 +265,8 @@ fn is_gain(by: f64) -> bool {
 struct Moments {
     inputs: usize,
     columns: usize,
+    /// The targets that are forces, counted over columns.
+    forces: Vec<usize>,
     /// Columns x columns, row by row.
     sums: Vec<f64>,
 }
@@ -207,7 +275,8 @@ impl Moments {
     fn none(data: &Dataset) -> Self {
         let inputs = data.inputs().len();
         let columns = inputs + data.targets().len();
-        Self { inputs, columns, sums: vec![0.0; columns * columns] }
+        let forces = (inputs..columns).filter(|k| data.targets()[k - inputs].ends_with(FORCE)).collect();
+        Self { inputs, columns, forces, sums: vec![0.0; columns * columns] }
     }
 
     fn of(data: &Dataset, rows: &Range<usize>) -> Self {
@@ -242,18 +311,25 @@ impl Moments {
 
     /// What they were if a difference were put right.
     fn without(&self, difference: Difference, orders: &[Vec<usize>]) -> Self {
+        // Each is a sum of two columns at most.
         let from = |k: usize| match difference {
-            Difference::Exchanged([a, b]) if k == a => (b, 1.0),
-            Difference::Exchanged([a, b]) if k == b => (a, 1.0),
-            Difference::Ordered(order) if k < self.inputs => (orders[order][k], 1.0),
-            Difference::Scaled { column, by } if k == column => (k, 1.0 / by),
-            _ => (k, 1.0),
+            Difference::Exchanged([a, b]) if k == a => [(b, 1.0), (k, 0.0)],
+            Difference::Exchanged([a, b]) if k == b => [(a, 1.0), (k, 0.0)],
+            Difference::Ordered(order) if k < self.inputs => [(orders[order][k], 1.0), (k, 0.0)],
+            Difference::Scaled { column, by } if k == column => [(k, 1.0 / by), (k, 0.0)],
+            Difference::Turned { columns: [a, b], by_deg } if k == a || k == b => {
+                let (sin, cos) = by_deg.to_radians().sin_cos();
+                if k == a { [(a, cos), (b, sin)] } else { [(b, cos), (a, -sin)] }
+            }
+            _ => [(k, 1.0), (k, 0.0)],
         };
         let place = |k: usize| {
-            let ((a, of_a), (b, of_b)) = (from(k / self.columns), from(k % self.columns));
-            of_a * of_b * self.at(a, b)
+            let both = [from(k / self.columns), from(k % self.columns)];
+            let parts = both[0].into_iter().flat_map(|one| both[1].map(|other| (one, other)));
+            let known = parts.filter(|((_, of_a), (_, of_b))| *of_a != 0.0 && *of_b != 0.0);
+            known.map(|((a, of_a), (b, of_b))| of_a * of_b * self.at(a, b)).sum()
         };
-        Self { sums: (0..self.sums.len()).map(place).collect(), ..*self }
+        Self { sums: (0..self.sums.len()).map(place).collect(), forces: self.forces.clone(), ..*self }
     }
 
     /// Weights of the linear model, of each target over the inputs.
@@ -284,10 +360,22 @@ impl Moments {
 
     /// The share of the targets' variance that a model leaves unexplained, the mean over targets.
     fn unexplained(&self, model: &[Vec<f64>]) -> f64 {
-        let shares = self.targets().zip(model).map(|(target, weights)| {
-            1.0 + (self.modelled(weights) - 2.0 * self.with(weights, target)) / self.at(target, target)
-        });
-        shares.sum::<f64>() / model.len() as f64
+        self.targets().zip(model).map(|(target, weights)| self.unexplained_of(weights, target)).sum::<f64>()
+            / model.len() as f64
+    }
+
+    /// The same of one target, a column.
+    fn unexplained_of(&self, weights: &[f64], target: usize) -> f64 {
+        1.0 + (self.modelled(weights) - 2.0 * self.with(weights, target)) / self.at(target, target)
+    }
+
+    /// By how much two forces are turned, best, against what a model of the others makes of the inputs.
+    fn turn(&self, model: &[Vec<f64>], columns: [usize; 2]) -> Difference {
+        let [a, b] = columns;
+        let [of_a, of_b] = columns.map(|k| &model[k - self.inputs]);
+        let sin = self.with(of_a, b) - self.with(of_b, a);
+        let cos = self.with(of_a, a) + self.with(of_b, b);
+        Difference::Turned { columns, by_deg: sin.atan2(cos).to_degrees() }
     }
 
     /// By how much a column differs, best, from what a model of the others makes of the inputs.
@@ -315,9 +403,17 @@ fn explained(of: &Moments, on: &Moments, orders: &[Vec<usize>]) -> Option<(Diffe
     let scaled = scaled.map(|column| Difference::Scaled { column, by: on.scale(&model, column) });
     let exchanged = pairs(each).chain(pairs(on.targets())).map(Difference::Exchanged);
     let ordered = (0..orders.len()).map(Difference::Ordered);
+    let forces = on.forces.iter().enumerate();
+    let turned = forces.flat_map(|(k, &a)| on.forces[k + 1..].iter().map(move |&b| [a, b]));
+    let turned = turned.map(|columns| on.turn(&model, columns));
     let put_right = |difference: Difference| (difference, on.without(difference, orders).unexplained(&model));
-    let (difference, mended) = best(exchanged.chain(scaled).chain(ordered).map(put_right).collect(), recorded)?;
-    let is_other = !matches!(difference, Difference::Scaled { by, .. } if is_gain(by));
+    let all = exchanged.chain(scaled).chain(ordered).chain(turned);
+    let (difference, mended) = best(all.map(put_right).collect(), recorded)?;
+    let is_other = match difference {
+        Difference::Scaled { by, .. } => !is_gain(by),
+        Difference::Turned { by_deg, .. } => is_turn(by_deg),
+        Difference::Exchanged(_) | Difference::Ordered(_) => true,
+    };
     is_other.then_some((difference, recorded, mended))
 }
 
@@ -375,6 +471,12 @@ mod tests {
                 Difference::Scaled { column, by } if column < 5 => x[[row, column]] *= by,
                 Difference::Scaled { column, by } => y[[row, column - 5]] *= by,
                 Difference::Ordered(_) => x.row_mut(row).as_slice_mut().unwrap().reverse(),
+                Difference::Turned { columns, by_deg } => {
+                    let (sin, cos) = by_deg.to_radians().sin_cos();
+                    let [a, b] = columns.map(|column| column - 5);
+                    let (along, across) = (y[[row, a]], y[[row, b]]);
+                    (y[[row, a]], y[[row, b]]) = (cos * along - sin * across, sin * along + cos * across);
+                }
             }
         }
         [x, y]
@@ -385,7 +487,9 @@ mod tests {
         let scaled = |column, by| Difference::Scaled { column, by };
         let exchanged = [[0, 1], [2, 4], [5, 7], [6, 7]].map(Difference::Exchanged);
         let others = [scaled(3, -1.0), scaled(1, 1000.0), scaled(5, -1.0), scaled(7, 9.81)];
-        for made in exchanged.into_iter().chain(others) {
+        let turned = [([5, 6], 30.0), ([5, 6], 90.0), ([5, 6], -135.0), ([5, 6], 180.0), ([6, 7], 40.0)];
+        let turned = turned.map(|(columns, by_deg)| Difference::Turned { columns, by_deg });
+        for made in exchanged.into_iter().chain(others).chain(turned) {
             for parts in [2, 3, 5] {
                 let all = found(changed(touched(parts), 1, made));
                 let one = all.iter().find(|one| one.part == 1);
@@ -394,6 +498,10 @@ mod tests {
                     (Difference::Scaled { column, by }, Difference::Scaled { column: own, by: made }) => {
                         assert_eq!(column, own);
                         assert!((by / made - 1.0).abs() < 0.2, "{by} for {made}");
+                    }
+                    (Difference::Turned { columns, by_deg }, Difference::Turned { columns: own, by_deg: made }) => {
+                        assert_eq!(columns, own);
+                        assert!(((by_deg - made + 180.0).rem_euclid(360.0) - 180.0).abs() < 5.0, "{by_deg} for {made}");
                     }
                     (one, made) => assert_eq!(one, made),
                 }
@@ -409,6 +517,24 @@ mod tests {
             other => panic!("{other:?}"),
         });
         assert!((by[0] / 0.5 - 1.0).abs() < 0.2 && (by[1] / 2.0 - 1.0).abs() < 0.2, "{by:?}");
+    }
+
+    #[test]
+    fn parts_of_several_persons_are_apart() {
+        let of = |columns: [Array2<f64>; 2]| {
+            let (data, parts) = dataset(columns);
+            apart(&data, &parts)
+        };
+        assert_eq!(of(touched(1)), None);
+        assert_eq!(of(touched(3)), None);
+        // Of another finger photodiodes see other forces.
+        let [mut x, y] = touched(3);
+        for row in EACH..2 * EACH {
+            let own: Vec<f64> = x.row(row).to_vec();
+            (0..5).for_each(|k| x[[row, k]] = own[(k + 1) % 5] - 0.7 * own[(k + 3) % 5]);
+        }
+        let found = of([x, y]).unwrap();
+        assert!(found.times > 2.0, "{found:?}");
     }
 
     #[test]
