@@ -575,6 +575,53 @@ fn rows_with_a_fault_of_the_sensor_have_no_voltage() {
     assert!(report["warnings"][0].words().contains("does not know in 20 rows, first `loose`"), "{report}");
 }
 
+/// A slow, uneven press and the response to it, a hundred rows a second.
+fn pressed(dir: &Dir) -> Vec<[f64; 5]> {
+    let mut loads = "time_s,pf1_Pa,pf2_Pa\n".to_owned();
+    for k in 0..=300 {
+        let t_s = 0.01 * f64::from(k);
+        let load = 3000.0 * (1.0 - (2.1 * t_s).cos()) + 600.0 * (1.0 - (7.0 * t_s).cos());
+        loads += &format!("{t_s},{load},{}\n", 0.8 * load);
+    }
+    dir.write("loads.csv", loads);
+    let options = "--loads loads.csv --set k_V_N_per_m=1500 --every 0.01 --with-loads --out r.csv --no-figures";
+    run(dir, "simulate", options).expect(0);
+    let names = ["time_s", "pf1_Pa", "pf2_Pa", "VP1", "VP2"];
+    dir.table("r.csv").iter().map(|row| names.map(|name| number(row, name))).collect()
+}
+
+#[test]
+fn a_lost_time_and_what_a_slower_or_saturated_device_measured_are_warned_of() {
+    let dir = Dir::new();
+    let rows = pressed(&dir);
+    let said = |head: &str, change: &dyn Fn(usize, [f64; 5]) -> [f64; 5]| {
+        let mut text = head.to_owned() + "\n";
+        for (k, row) in rows.iter().enumerate() {
+            text += &(change(k, *row).map(|value| value.to_string()).join(",") + "\n");
+        }
+        dir.write("set.csv", text);
+        run(&dir, "fit", "set.csv --free k_V --out f.json --no-figures").expect(0)
+    };
+    let head = "time_s,pf1_Pa,pf2_Pa,VP1,VP2";
+    let plain = said(head, &|_, row| row);
+    for words in ["is it the time", "of a slower device", "cut off"] {
+        assert!(!plain.stderr.contains(words), "{}", plain.stderr);
+    }
+    said(&head.replace("time_s", "stamp"), &|_, row| row).says("the column `stamp` grows evenly").says("equilibria");
+    let held = |k: usize, row: [f64; 5]| {
+        let [_, first, second, ..] = rows[k / 10 * 10];
+        [row[0], first, second, row[3], row[4]]
+    };
+    let slow = said(head, &held).says("pf1_Pa stays for 10 rows, 0.1 s, and jumps").says("pf2_Pa stays for 10 rows");
+    assert!(!slow.stderr.contains("cut off"), "{}", slow.stderr);
+    let [least, most] =
+        rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| [low.min(row[4]), high.max(row[4])]);
+    let top = least + 0.7 * (most - least);
+    said(head, &|_, row| [row[0], row[1], row[2], row[3], row[4].min(top)])
+        .says("VP2 stays at exactly")
+        .says("cut off");
+}
+
 #[test]
 fn the_result_is_the_same_bytes_wherever_and_whenever() {
     let dir = Dir::new();

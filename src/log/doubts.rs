@@ -41,6 +41,14 @@ const BLOCK_S: f64 = 0.25;
 /// More than a finger presses, newtons (assumed; norms of the strength of pinches: Mathiowetz et al., Archives of
 /// Physical Medicine and Rehabilitation 66(2), 1985).
 const MOST_N: f64 = 200.0;
+/// A column is held where so many runs of equal values, of this share, are as long as the usual one, to a row; runs of
+/// one row are at most so many; a run is no longer, seconds; and no step is this share of all (assumed: a force that
+/// grows evenly, in coarse digits, has one). Steps that somebody prompts are longer and fewer.
+const RUNS: usize = 20;
+const ALIKE: f64 = 0.8;
+const ALONE: f64 = 0.1;
+const HELD_S: f64 = 0.6;
+const ONE_STEP: f64 = 0.6;
 /// An offset that is forgiven, newtons: of a force that may pull, of one that rests.
 const OFFSET_N: f64 = 0.5;
 const RESTS_N: f64 = 0.02;
@@ -160,6 +168,34 @@ pub(crate) fn cut_off(name: &str, values: &[f64]) -> Vec<String> {
         )
     })
     .collect()
+}
+
+/// What to say of a column that stays for a few rows and jumps, all through, while it moves.
+pub(crate) fn held(name: &str, time_s: &[f64], values: &[f64]) -> Option<String> {
+    let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+    // The first and the last one are cut off.
+    let [_, inner @ .., _] = &runs[..] else { return None };
+    let share =
+        |counts: &dyn Fn(&&[f64]) -> bool| inner.iter().filter(|run| counts(run)).count() as f64 / inner.len() as f64;
+    let usual = median_of(inner.iter().map(|run| run.len() as f64)).filter(|_| inner.len() >= RUNS)?;
+    let lasts_s = usual * median_step_s(time_s)?;
+    let mut steps: Vec<f64> = inner.windows(2).map(|pair| (pair[1][0] - pair[0][0]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    let most = 1e-6 * steps.last()?;
+    let one_step = steps.chunk_by(|a, b| b - a <= most).map(<[f64]>::len).max()?;
+    let is_held = usual >= 2.0
+        && lasts_s <= HELD_S
+        && share(&|run| (run.len() as f64 - usual).abs() <= 1.0) >= ALIKE
+        && share(&|run| run.len() == 1) <= ALONE
+        && (one_step as f64) < ONE_STEP * steps.len() as f64;
+    is_held.then(|| {
+        format!(
+            "{name} stays for {} rows, {} s, and jumps, all through: is it of a slower device, repeated? Its steps are \
+             taken as they are; write its own samples at their own times, or what lies between them",
+            short(usual),
+            short(lasts_s)
+        )
+    })
 }
 
 /// What to say of shear without pressing, of forces.
@@ -285,6 +321,32 @@ mod tests {
         };
         assert!(said(0.5, 1.0).starts_with("Fx_N is 0.4"), "{}", said(0.5, 1.0));
         assert_eq!([said(0.05, 1.0), said(0.5, -1.0)].concat(), "");
+    }
+
+    #[test]
+    fn what_a_slower_device_measured_is_seen_in_its_steps() {
+        let said = |every_s: f64, of: &dyn Fn(f64) -> f64| {
+            let time_s: Vec<f64> = (0..2000).map(|k| 0.01 * f64::from(k)).collect();
+            let values: Vec<f64> = time_s.iter().map(|t_s| of((t_s / every_s + 1e-9).floor() * every_s)).collect();
+            held("Fz_N", &time_s, &values)
+        };
+        let force = |t_s: f64| -2.0 + 2.0 * (1.3 * t_s).cos() + 0.3 * (4.1 * t_s).sin();
+        for (every_s, rows) in
+            [(0.02, "2"), (0.04, "4"), (0.1, "10"), (0.2, "20"), (0.5, "50"), (0.025, "2 rows, 0.02")]
+        {
+            let said = said(every_s, &force).unwrap_or_else(|| panic!("every {every_s} s"));
+            assert!(said.starts_with(&format!("Fz_N stays for {rows}")) || every_s == 0.025, "{said}");
+        }
+        // Presses and rests between them, all in the digits of a converter.
+        let presses = |t_s: f64| (force(t_s) + 1.0).min(0.0);
+        let coarse = |t_s: f64| (force(t_s) / 0.05).round() * 0.05;
+        let evenly = |t_s: f64| (0.4 * t_s / 0.05).floor() * 0.05;
+        let prompted = |t_s: f64| (t_s / 1.0).floor() % 5.0;
+        for own in [&force as &dyn Fn(f64) -> f64, &presses, &coarse, &evenly, &prompted, &|_| 0.0] {
+            assert_eq!(said(0.01, own), None);
+        }
+        assert!(said(0.1, &presses).is_some(), "rests between");
+        assert_eq!([held("Fz_N", &[], &[]), held("Fz_N", &[0.0; 3], &[1.0, 2.0, 2.0])], [None, None]);
     }
 
     #[test]

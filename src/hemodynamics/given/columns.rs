@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::{Channel, LitRows, LogReading, without_faults};
+use crate::median::median_of;
 use crate::table::{Cell, Table};
 use crate::words::nearest;
 
@@ -13,6 +14,10 @@ pub(in crate::hemodynamics) const PRESSED: [&str; 2] = ["pf1_Pa", "pf2_Pa"];
 /// `P_H` and `P_L`.
 pub(in crate::hemodynamics) const BLOOD: [&str; 2] = ["ph_Pa", "pl_Pa"];
 
+/// A column is like a time where, in so many rows at least, this share of its steps is within a half of the usual one
+/// (assumed).
+const EVEN_ROWS: usize = 20;
+const EVEN: f64 = 0.8;
 /// How many faults of a table are reported.
 const MOST_FAULTS: usize = 10;
 
@@ -122,6 +127,29 @@ impl Rows {
             .filter_map(|own| Some((own, nearest(own, &missing)?)))
             .map(|(own, meant)| format!("the column `{own}` is not used; did you mean `{meant}`?"))
             .collect()
+    }
+
+    /// What to say of a column that is not `used` and grows as times do, of a table without times.
+    pub(in crate::hemodynamics) fn like_a_time(&self, used: &[&str]) -> Option<String> {
+        let Source::Table(table) = &self.from else { return None };
+        let unused = self.names.iter().filter(|own| !used.contains(&own.as_str()));
+        let is_like = |name: &&String| {
+            let values = table.values(name).unwrap_or_default();
+            let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let Some(usual) = median_of(steps.iter().copied()).filter(|_| steps.len() >= EVEN_ROWS) else {
+                return false;
+            };
+            let even = steps.iter().filter(|step| (0.5 * usual..=1.5 * usual).contains(*step)).count();
+            // Rows that are counted are no times.
+            let is_count = values.iter().all(|value| value.fract() == 0.0) && usual == 1.0;
+            steps.iter().all(|step| *step > 0.0) && even as f64 >= EVEN * steps.len() as f64 && !is_count
+        };
+        unused.clone().find(is_like).map(|name| {
+            format!(
+                "the column `{name}` grows evenly from row to row: is it the time? As no column is called `{TIME}`, rows \
+                 are taken for equilibria; call it so, in seconds, where they follow each other"
+            )
+        })
     }
 
     /// The columns that are `needed` and those `wanted` that are there. Every cell has to be a finite number.

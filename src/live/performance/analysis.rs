@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lunula_live::performance::{Course, Curve, LEVEL, Law, Paired, Point};
-use lunula_live::spread::Spread;
+use lunula_live::spread::{Spread, t_quantile};
 
 use super::read::{Row, Trials};
 use super::report::{
@@ -121,27 +121,37 @@ fn compare(methods: [&MethodFigures; 2], [baseline, other]: [&Times; 2]) -> Comp
         trials.extend(paired.map(|paired| TrialPair { trial, paired }));
     }
     let means: Vec<[f64; 2]> = sums.values().map(|(sum, count)| sum.map(|sum| sum / count)).collect();
-    let initial = trials.first().and_then(|first| first.paired.ratio_of_means);
     Comparison {
         method: methods[1].method.clone(),
         baseline: methods[0].method.clone(),
         overall: Paired::of(&means),
-        initially: Statement {
-            ratio: initial,
-            ratio_se: None,
-            at_most: HALF,
-            holds: initial.map(|ratio| ratio < HALF),
-            unsettled: None,
-        },
+        initially: initially(trials.first()),
         to_level_off: to_level_off(methods),
         trials,
     }
 }
 
+/// A statement of which nothing is known.
+const NONE: Statement = Statement { ratio: None, ratio_se: None, at_most: HALF, holds: None, unsettled: None };
+
+/// Whether the method takes less than half as long in the first trial with both.
+fn initially(first: Option<&TrialPair>) -> Statement {
+    let Some(Paired { n, ratio_of_means: Some(ratio), ratio_of_means_se, .. }) = first.map(|first| first.paired) else {
+        return NONE;
+    };
+    let reach = ratio_of_means_se.zip(t_quantile(n - 1)).map(|(se, t)| t * se);
+    let unsettled = match reach {
+        None => Some("one operator does not say how much operators differ"),
+        Some(reach) if (ratio - HALF).abs() <= reach => Some("its 95 % interval holds half"),
+        Some(_) => None,
+    };
+    let holds = unsettled.is_none().then_some(ratio < HALF);
+    Statement { ratio: Some(ratio), ratio_se: ratio_of_means_se, holds, unsettled, ..NONE }
+}
+
 /// Of `[baseline, method]`, whether the method is level in half the trials.
 fn to_level_off(methods: [&MethodFigures; 2]) -> Statement {
-    let none = Statement { ratio: None, ratio_se: None, at_most: HALF, holds: None, unsettled: None };
-    let [Some(from), Some(to)] = methods.map(|method| method.levels_off) else { return none };
+    let [Some(from), Some(to)] = methods.map(|method| method.levels_off) else { return NONE };
     let ratio = to.trial.value / from.trial.value;
     let ratio_se = ratio * (to.trial.se / to.trial.value).hypot(from.trial.se / from.trial.value);
     let holds = ratio <= HALF;
@@ -162,6 +172,6 @@ fn to_level_off(methods: [&MethodFigures; 2]) -> Statement {
         ratio_se: Some(ratio_se),
         holds: unsettled.is_none().then_some(holds),
         unsettled,
-        ..none
+        ..NONE
     }
 }

@@ -129,7 +129,66 @@ fn warnings(trials: &Trials, course: &Course) -> Vec<String> {
     });
     let operators = copied(&trials.operators, trials, |row| (row.operator, row.method));
     let methods = copied(&trials.methods, trials, |row| (row.method, row.operator));
-    named.chain(long).chain(little).chain(cumulative(trials, course)).chain(operators).chain(methods).collect()
+    let slips = unlike(trials).into_iter().chain(stopped(trials)).chain(cumulative(trials, course));
+    named.chain(long).chain(little).chain(slips).chain(operators).chain(methods).collect()
+}
+
+/// A decision is unlike the others where its logarithm differs by more than this, and by so many times their usual
+/// difference, from its trial's and its operator's median (assumed: a slip in a digit gives 2.3; trials that differ by
+/// 15 % from operator to operator 0.2).
+const UNLIKE: f64 = 0.7;
+const TIMES: f64 = 8.0;
+/// Fewer operators of a trial have no usual one, and fewer rows no usual difference.
+const OPERATORS: usize = 3;
+const FEW: usize = 10;
+
+/// Rows that are far from their trial's others, as by a slip of the pen.
+fn unlike(trials: &Trials) -> Option<String> {
+    let known = trials.rows.iter().filter(|row| row.decision_s > 0.0);
+    let mut off: Vec<(&Row, f64)> = known.map(|row| (row, row.decision_s.ln())).collect();
+    let mut centre = |of: fn(&Row) -> (usize, u32), fewest: usize| {
+        let mut groups: BTreeMap<(usize, u32), Vec<f64>> = BTreeMap::new();
+        off.iter().for_each(|(row, off)| groups.entry(of(row)).or_default().push(*off));
+        let usual = |row: &Row| {
+            let group = groups.get(&of(row)).filter(|group| group.len() >= fewest)?;
+            median_of(group.iter().copied())
+        };
+        off.retain_mut(|(row, off)| usual(row).map(|usual| *off -= usual).is_some());
+    };
+    centre(|row| (row.method, row.trial), OPERATORS);
+    centre(|row| (row.operator, 0), 1);
+    let usual = median_of(off.iter().map(|(_, off)| off.abs())).filter(|_| off.len() >= FEW)?;
+    let far: Vec<&(&Row, f64)> = off.iter().filter(|(_, off)| off.abs() > UNLIKE.max(TIMES * usual)).collect();
+    let (row, by) = far.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let more = if far.len() > 1 { format!(" ({} more rows alike)", far.len() - 1) } else { String::new() };
+    Some(format!(
+        "a decision of {} took {:.2} s in trial {} with {}, {:.1} times what the others lead to expect{more}: is it a \
+         slip? One row may turn every statement",
+        trials.operators[row.operator],
+        row.decision_s,
+        row.trial,
+        trials.methods[row.method],
+        by.exp()
+    ))
+}
+
+/// So many trials of exactly the greatest time, and so many times as many as have any other time, were stopped.
+const STOPPED: usize = 3;
+
+/// Trials that were ended by a limit and not by the operator.
+fn stopped(trials: &Trials) -> Option<String> {
+    let mut times: Vec<f64> = trials.rows.iter().map(|row| row.time_s).collect();
+    times.sort_by(f64::total_cmp);
+    let [others @ .., greatest] = &times.chunk_by(|a, b| a == b).collect::<Vec<_>>()[..] else { return None };
+    let usual = others.iter().map(|same| same.len()).max()?;
+    (greatest.len() >= STOPPED * usual).then(|| {
+        format!(
+            "{} trials took exactly {} s, and none longer: were they stopped by a limit? They count as done in that \
+             time; leave their time empty",
+            greatest.len(),
+            greatest[0]
+        )
+    })
 }
 
 /// Operators, or methods, with the same trials and times, as a log that was copied under another name has; `places` are

@@ -27,7 +27,7 @@ impl Job for PerformanceOptions {
             Part::pictures(""),
         ],
     )
-    .revision(4);
+    .revision(5);
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(plan(Some(&outputs(Path::new(""), demand))))

@@ -196,7 +196,7 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
         doubts: [doubts::forces(force()), doubts::glitches(force()), doubts::cut_off(FORCE, &fz_n)]
             .into_iter()
             .flatten()
-            .chain(stands(&time_s, &force_n))
+            .chain(stands(&time_s, &force_n).or_else(|| doubts::held(FORCE, &time_s, &fz_n)))
             .collect(),
         angles: finger.angles.iter().filter_map(angle).collect(),
         force: Force { time_s, force_n, lifted },

@@ -9,7 +9,7 @@ use ndarray::{Axis, Slice};
 use super::blocks::TURNED;
 use super::columns::cell;
 use super::source::Source;
-use crate::log::doubts::cut_off;
+use crate::log::doubts::{cut_off, held};
 use crate::log::piles;
 use crate::median::median_of;
 
@@ -46,7 +46,9 @@ pub(super) fn warnings(source: &Source, targets: &[String], keep_faults: bool) -
     }
     warnings.extend(unchanging(source).map(|said| format!("{file}: {said}")));
     warnings.extend(copies(source).map(|said| format!("{file}: {said}")));
-    let targets = targets.iter().zip(&source.y).flat_map(|(name, values)| cut_off(name, &seen(values)));
+    let targets = targets.iter().zip(&source.y);
+    let targets = targets
+        .flat_map(|(name, values)| cut_off(name, &seen(values)).into_iter().chain(held(name, &source.time_s, values)));
     warnings.extend(targets.map(|said| format!("{file}: {said}")));
     warnings
 }

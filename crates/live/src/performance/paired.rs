@@ -17,6 +17,8 @@ pub struct Paired {
     pub difference_interval: Option<[f64; 2]>,
     /// The method's mean over the baseline's, over these operators; none where the baseline's is zero.
     pub ratio_of_means: Option<f64>,
+    /// Its standard error, by the operators' differences from it; none of one operator.
+    pub ratio_of_means_se: Option<f64>,
     /// The geometric mean of the operators' own ratios; none where a value is zero.
     pub ratio: Option<f64>,
     /// Its 95 % interval (Student's t of the logarithms).
@@ -33,12 +35,18 @@ impl Paired {
         let positive = pairs.iter().flatten().all(|value| *value > 0.0);
         let logarithms = || Spread::of(pairs.iter().map(|[baseline, method]| (method / baseline).ln()));
         let ratio = if positive { logarithms() } else { None };
+        let of_means = (baseline > 0.0).then(|| method / baseline);
+        let of_means_se = of_means.and_then(|of_means| {
+            let off = Spread::of(pairs.iter().map(|[baseline, method]| method - of_means * baseline))?;
+            Some(off.sd? * (pairs.len() as f64).sqrt() / baseline)
+        });
         Some(Self {
             n: difference.n,
             difference: difference.mean,
             difference_sd: difference.sd,
             difference_interval: difference.interval(),
-            ratio_of_means: (baseline > 0.0).then(|| method / baseline),
+            ratio_of_means: of_means,
+            ratio_of_means_se: of_means_se,
             ratio: ratio.map(|ratio| ratio.mean.exp()),
             ratio_interval: ratio.and_then(|ratio| Some(ratio.interval()?.map(f64::exp))),
         })
@@ -59,6 +67,8 @@ mod tests {
         let [low, high] = paired.difference_interval.unwrap();
         assert!((low + 4.0 + half).abs() <= 1e-14 && (high + 4.0 - half).abs() <= 1e-14);
         assert!((paired.ratio_of_means.unwrap() - 1.0 / 3.0).abs() <= 1e-15);
+        // Less a third of the baseline 1, 0 and -1: standard deviation 1, over 6 by the root of 3.
+        assert!((paired.ratio_of_means_se.unwrap() - 1.0 / 108.0_f64.sqrt()).abs() <= 1e-15);
         let ratio = 36.0_f64.powf(-1.0 / 3.0);
         assert!((paired.ratio.unwrap() - ratio).abs() <= 1e-15);
         let [low, high] = paired.ratio_interval.unwrap();
@@ -70,7 +80,7 @@ mod tests {
         assert_eq!(Paired::of(&[]), None);
         let one = Paired::of(&[[2.0, 1.0]]).unwrap();
         assert_eq!((one.n, one.difference_sd, one.difference_interval, one.ratio_interval), (1, None, None, None));
-        assert_eq!((one.ratio, one.ratio_of_means), (Some(0.5), Some(0.5)));
+        assert_eq!((one.ratio, one.ratio_of_means, one.ratio_of_means_se), (Some(0.5), Some(0.5), None));
         let zero = Paired::of(&[[0.0, 1.0], [0.0, 0.0]]).unwrap();
         assert_eq!((zero.ratio, zero.ratio_of_means, zero.difference), (None, None, 0.5));
     }

@@ -145,13 +145,14 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     let photodiodes = photodiodes::of(names, &columns.photodiodes, units).map_err(refused)?;
     let mut traces = Vec::new();
     let (mut missing, mut faults) = (0, 0);
-    let mut unknown = None;
+    let (mut unknown, mut of_photodiodes) = (None, Vec::new());
     for one in &photodiodes {
         let voltages = rows.voltages(&one.name)?;
         faults += voltages.faults;
         missing += voltages.values_v.iter().filter(|value| value.is_nan()).count() - voltages.faults;
         // The same rows for every photodiode.
         unknown = voltages.warning;
+        of_photodiodes.extend(doubts::cut_off(&one.name, &voltages.values_v));
         traces.push(Trace::new(one.unit, voltages.values_v));
     }
     let mut times_s = read.get(TIME).map(<[f64]>::to_vec);
@@ -185,15 +186,26 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut warnings = rows.warnings().to_vec();
-    warnings.extend(unknown);
+    warnings.extend(unknown.into_iter().chain(of_photodiodes));
+    let used: Vec<&str> = needed.iter().copied().chain(photodiodes.iter().map(|one| one.name.as_str())).collect();
     warnings.extend(times_s.as_deref().and_then(doubts::time).filter(|_| !rows.is_log()));
     warnings.extend(match &force {
         Some(force) => signs::of_force(force.name, read.get(force.name).unwrap_or_default(), rows.is_log()),
         None => signs::of_pressures(PRESSED.map(|name| (name, read.get(name).unwrap_or_default()))),
     });
-    if dynamic {
-        let used: Vec<&str> = needed.iter().copied().chain(photodiodes.iter().map(|one| one.name.as_str())).collect();
-        warnings.extend(rows.near_misses(&BLOOD, &used));
+    match read.get(TIME) {
+        Some(times_s) => {
+            warnings.extend(rows.near_misses(&BLOOD, &used));
+            let loads = needed.iter().filter(|name| **name != TIME && columns.between == Between::Straight);
+            let held = |name: &&str| doubts::held(name, times_s, read.get(name).unwrap_or_default());
+            warnings.extend(loads.filter_map(held));
+        }
+        None => {
+            let loads = needed.iter().filter_map(|name| read.get(name));
+            // A series of growing loads has other columns that grow.
+            let turns = |load: &[f64]| !load.is_sorted() && !load.is_sorted_by(|a, b| a >= b);
+            warnings.extend(loads.map(turns).any(|turns| turns).then(|| rows.like_a_time(&used)).flatten());
+        }
     }
     Ok(ReadRecording {
         columns: names.to_vec(),
