@@ -205,6 +205,12 @@ fn too_few_views_and_views_that_are_alike_are_refused() {
     let dir = first_views(3);
     let answer = camera(&dir, "scene/views", &["--coefficients", "4"]).expect(0).says("3 views only");
     near(lens(&answer), TRUTH);
+    // A board that rests, in another frame's noise.
+    let mut rests = image::open(dir.path("scene/views/01.png")).expect("a view").to_luma8();
+    rests.pixels_mut().step_by(7).for_each(|pixel| pixel.0[0] = pixel.0[0].saturating_add(2));
+    rests.save(dir.path("scene/views/05.png")).expect("a view");
+    camera(&dir, "scene/views", &["--coefficients", "4"]).expect(0).says("4 views show 3 places of the board only");
+    std::fs::remove_file(dir.path("scene/views/05.png")).expect("removed");
     // A copy is no other view.
     std::fs::copy(dir.path("scene/views/01.png"), dir.path("scene/views/04.png")).expect("a copy");
     let answer = camera(&dir, "scene/views", &["--coefficients", "4"]).expect(0).says("3 views only");

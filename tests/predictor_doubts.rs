@@ -149,6 +149,48 @@ fn a_column_that_hangs_is_warned_of() {
     unheard(&hangs(100.0, 100.6, 10..13, None));
 }
 
+/// A transducer that was mounted turned, another person's log, one that lost the LED's column; and a trade-off that is
+/// judged on what it was fitted to.
+#[test]
+fn files_of_other_mountings_persons_and_lights_are_warned_of() {
+    let dir = Dir::new();
+    phantom(&dir, ["1", "1", "1"], "touch", "formulae", "a");
+    phantom(&dir, ["1", "1", "2"], "touch", "formulae", "b");
+    let train = |other: &str| {
+        dir.lunula(&["train", "a/log.csv", other, "--target", "force", "--out", "m.json"]).expect(0).stderr
+    };
+    let plain = train("b/log.csv");
+    for words in ["contradict", "is that another finger", "column `led`"] {
+        assert!(!plain.contains(words), "{plain}");
+    }
+    let turn = |cells: &mut [String]| {
+        cells.swap(10, 11);
+        scale(&mut cells[10], -1.0);
+    };
+    write_changed(&dir, "b/log.csv", "b.csv", &turn);
+    let turned = train("b.csv");
+    assert!(turned.contains("Fx_N and Fy_N look turned by ") && turned.contains("(mounted otherwise?)"), "{turned}");
+    phantom(&dir, ["3", "1", "5"], "touch", "formulae", "c");
+    let another = train("c/log.csv");
+    assert!(another.contains("times the error in F") && another.contains("is that another finger"), "{another}");
+    let log = std::fs::read_to_string(dir.path("b/log.csv")).expect("a log");
+    let lit = log.lines().filter(|line| line.split(',').nth(1) != Some("0"));
+    let lit = lit.map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        [&cells[..1], &cells[2..]].concat().join(",") + "\n"
+    });
+    dir.write("lit.csv", lit.collect::<String>());
+    let lost = train("lit.csv");
+    assert!(lost.contains("lit.csv has no column `led`, and a/log.csv has"), "{lost}");
+    for (folder, log) in [("train", "a"), ("test", "a")] {
+        std::fs::create_dir(dir.path(folder)).expect("a folder");
+        std::fs::copy(dir.path(&format!("{log}/log.csv")), dir.path(&format!("{folder}/{log}.csv"))).expect("a copy");
+    }
+    let job =
+        ["tradeoff", "predictor", "--input", "train", "--truth", "test", "--quick", "--repeats", "1", "--out", "t"];
+    dir.lunula(&job).expect(0).says("a.csv is trained on as well: its error is that of the fit");
+}
+
 /// Logs of touch of the phantom, persons and days, each with its kind of photodiodes and its person.
 fn phantom_logs(dir: &Dir) -> Vec<(String, &'static str, &'static str)> {
     let mut logs = Vec::new();

@@ -92,10 +92,18 @@ fn loads_that_never_act_or_suck_are_named() {
         .says("--pf1 step:-2000@0.55..0.58 goes below 0: pressing is positive");
     said("--pf2 sine:0+100@1 --until 2").says("--pf2 sine:0+100@1 goes below 0");
     said("--loads suck.csv --until 2").says("suck.csv: pf1_Pa goes below 0");
+    // Beats a minute, and a stiffness in N/mm.
+    said("--ph sine:10000+2000@72 --until 2").says("repeats 72 times a second").says("They are @1.200");
+    said("--pf1 step:5000@1..9 --set k_C1_N_per_m=100 --until 2").says("times its nominal diameter: is a stiffness");
     run(&dir, "--static -500..0/100 --out s.csv --no-figures").expect(0).says("loads begin at -500 Pa: pressing is");
-    for fine in ["--pf1 step:5000@1..9 --pf2 sine:1000+1000@1", "--pf1 step:5000@-1..0", "--pf1 ramp:5000..0@0..1"] {
+    for fine in [
+        "--pf1 step:5000@1..9 --pf2 sine:1000+1000@1",
+        "--ph sine:10000+2000@1.2 --pf1 step:5000@1..9",
+        "--pf1 step:5000@-1..0",
+        "--pf1 ramp:5000..0@0..1",
+    ] {
         let answer = said(&format!("{fine} --until 2"));
-        assert!(!answer.stderr.contains("constant") && !answer.stderr.contains("below 0"), "{}", answer.stderr);
+        assert!(!["constant", "below 0", "times"].iter().any(|word| answer.stderr.contains(word)), "{}", answer.stderr);
     }
 }
 

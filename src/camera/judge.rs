@@ -11,6 +11,9 @@ use crate::vision::Corners;
 pub(super) const FEWEST_VIEWS: usize = 3;
 /// Fewer are warned of (assumed, after OpenCV's advice of 10).
 const FEW_VIEWS: usize = 8;
+/// A board whose corners are no further apart in two views, mean in pixels, rests (assumed: noise moves corners by 0.1 px,
+/// a hand that means to move it by tens).
+const SAME_PX: f64 = 2.0;
 /// Boards whose normals are all within so much of each other are alike, degrees (assumed).
 const LEAST_SPREAD_DEG: f64 = 6.0;
 /// A standard error of the focal lengths above which they are not determined, and one that is warned of, as a share
@@ -163,6 +166,22 @@ pub(super) fn covered(views: &[View], (width, height): (usize, usize)) -> Covere
     Covered { cells: seen.iter().filter(|seen| **seen).count() as f64 / seen.len() as f64, reach }
 }
 
+/// At how many places the board is: in frames of a film in which it rests it stays at one.
+fn places(views: &[View]) -> usize {
+    let is_same = |one: &View, other: &View| {
+        let away = |(a, b): (&[f32; 2], &[f32; 2])| f64::from((a[0] - b[0]).hypot(a[1] - b[1]));
+        let sum: f64 = one.corners.iter().zip(&other.corners).map(away).sum();
+        sum < SAME_PX * one.corners.len() as f64
+    };
+    let mut distinct: Vec<&View> = Vec::new();
+    for view in views {
+        if !distinct.iter().any(|other| is_same(view, other)) {
+            distinct.push(view);
+        }
+    }
+    distinct.len()
+}
+
 /// What a person has to know before using the lens.
 pub(super) fn warnings(fit: &Fit, views: &[View], covered: Covered, board: BoardSize) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -174,8 +193,13 @@ pub(super) fn warnings(fit: &Fit, views: &[View], covered: Covered, board: Board
              zoom, focus or a stabiliser move between views?"
         ));
     }
-    if views.len() < FEW_VIEWS {
-        warnings.push(format!("{} views only: 10 to 20 show a bent board or a wrong view", views.len()));
+    let places = places(views);
+    if places < FEW_VIEWS {
+        let what = match views.len() {
+            few if few == places => format!("{few} views only"),
+            many => format!("{many} views show {places} places of the board only, and count {many} times"),
+        };
+        warnings.push(format!("{what}: 10 to 20 show a bent board or a wrong view"));
     }
     let sd = focal_sd_share(fit);
     if sd > DOUBTFUL {

@@ -3,8 +3,8 @@
 //! In: a [`PhotoSet`](crate::photo::PhotoSet), and keys. Out: LabelMe files beside the photographs (or where the set's
 //! list has them), which `lunula photos` reads; pictures of the part around the nail that is shown, and of the nail as
 //! it would come out, made by the code that makes the results. Doubtful nails come first, then photographs on which
-//! nothing was found, then drawn outlines where the network sees the nail elsewhere, then what detection found, then what
-//! somebody has drawn.
+//! nothing was found, then drawn outlines where the network sees the nail elsewhere, then what detection found, then
+//! what somebody has drawn.
 //!
 //! Who draws and listens is not known here: [`Editor`] leaves its state as JSON and is given keys as JSON. Most
 //! corrections are of five numbers (place, length, width, direction), each changed by a key, and the border is looked

@@ -17,7 +17,7 @@ const PACKAGES: [Package; 2] = [("numpy", "numpy"), ("sklearn", "scikit-learn")]
 pub(crate) fn measure(bench: &Bench, folder: &Path, found: &mut Found) -> anyhow::Result<()> {
     found.try_program(NAME, |found| {
         let version = bench.python.versions(&PACKAGES)?;
-        let [train, test] = data(&bench.plan.predictor(folder)?)?;
+        let ([train, test], _) = data(&bench.plan.predictor(folder)?)?;
         let write = |name: &str, values: ArrayView2<'_, f64>| {
             let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
             std::fs::write(folder.join(format!("{name}.f64")), bytes)

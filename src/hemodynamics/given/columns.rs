@@ -146,8 +146,8 @@ impl Rows {
         };
         unused.clone().find(is_like).map(|name| {
             format!(
-                "the column `{name}` grows evenly from row to row: is it the time? As no column is called `{TIME}`, rows \
-                 are taken for equilibria; call it so, in seconds, where they follow each other"
+                "the column `{name}` grows evenly from row to row: is it the time? As no column is called `{TIME}`, \
+                 rows are taken for equilibria; call it so, in seconds, where they follow each other"
             )
         })
     }

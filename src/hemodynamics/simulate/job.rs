@@ -10,7 +10,7 @@ use crate::files::{Places, beside};
 use crate::hemodynamics::figures::draw_response;
 use crate::hemodynamics::given::{LoadOptions, ReadLoads, SUCTION, Start};
 use crate::hemodynamics::solve::{Run, RunSettings, respond, start_state};
-use crate::hemodynamics::{HemodynamicsError, named};
+use crate::hemodynamics::{HemodynamicsError, Response, named};
 use crate::job::{Outputs, Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
@@ -143,6 +143,7 @@ pub fn simulate(
     };
     let mut report = Report { left_out, failed, pictures, ..Report::new("simulate", watch, figures) };
     remarks(&mut report, inputs, options, &loads);
+    report.warnings.extend(wide(&response));
     Ok(report.timed(&stages, begin).commit(places, report_at.as_deref())?)
 }
 
@@ -167,6 +168,16 @@ fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &Simul
             report.warnings.extend(constant(&format!("{option} {load}"), [first, last], until_s));
         }
     }
+    for (option, load) in [("--ph", &blood.ph), ("--pl", &blood.pl)] {
+        let Some((load, hz)) = load.as_ref().and_then(|load| Some((load, load.frequency_hz()?))) else { continue };
+        if hz.abs() > FAST_HZ {
+            report.warnings.push(format!(
+                "{option} {load}: repeats {hz} times a second, and no heart beats so fast: are these beats a minute? \
+                 They are @{:.3}",
+                hz / 60.0
+            ));
+        }
+    }
     if let (Some(known_s), Some(path)) = (loads.known_s, &inputs.loads) {
         let (path, [_, last]) = (path.display(), known_s);
         if let Some(said) = constant(&path.to_string(), known_s, until_s) {
@@ -186,6 +197,23 @@ fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &Simul
             report.notes.push(format!("{what} goes below 0: {SUCTION}"));
         }
     }
+}
+
+/// Blood's pressure repeats less often, 1/s (assumed: 300 beats a minute).
+const FAST_HZ: f64 = 5.0;
+/// A wall that moves by more nominal diameters is of no vessel (measured: 1.1 at most with the thesis' parameters, 7
+/// with extreme ones that may be).
+const WIDE: f64 = 10.0;
+
+/// What to say of vessels that grow beyond anything.
+fn wide(response: &Response) -> Option<String> {
+    let widest = response.lumens.iter().copied().fold(0.0, f64::max);
+    (widest > WIDE).then(|| {
+        format!(
+            "a vessel opens to {widest:.0} times its nominal diameter: is a stiffness, an area or a pressure in \
+             another unit? Stiffnesses are in N/m"
+        )
+    })
 }
 
 /// That a load is constant during a run until `until_s`, where it changes only before or after it.

@@ -76,7 +76,8 @@ impl Unknown {
         let Self { rows, first } = self;
         (*rows > 0).then(|| {
             format!(
-                "`sensor_status` says something that lunula does not know in {rows} rows, first `{first}`; they are used"
+                "`sensor_status` says something that lunula does not know in {rows} rows, first `{first}`; they are \
+                 used"
             )
         })
     }

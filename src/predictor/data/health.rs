@@ -205,8 +205,8 @@ fn of_several_persons(data: &Dataset, parts: &[Range<usize>], names: &[&str]) ->
     }
     let Apart { part, target, times } = apart(data, parts)?;
     Some(format!(
-        "one linear model of all files leaves {times:.1} times the error in {} that one of each file leaves, and fits {} \
-         worst: is that another finger, or were transducer or sensor mounted otherwise? Models are of one person",
+        "one linear model of all files leaves {times:.1} times the error in {} that one of each file leaves, and fits \
+         {} worst: is that another finger, or were transducer or sensor mounted otherwise? Models are of one person",
         data.targets()[target],
         names[part]
     ))

@@ -310,8 +310,8 @@ fn lit_and_not(sources: &[Source]) -> Option<String> {
     let [without, with] = [false, true].map(|lit| sources.iter().find(|source| source.is_lit == Some(lit)));
     let [without, with] = [without?, with?].map(|source| source.path.display());
     Some(format!(
-        "{without} has no column `led`, and {with} has: is the ambient light in the one, which is taken from the other? \
-         Give both as they were logged"
+        "{without} has no column `led`, and {with} has: is the ambient light in the one, which is taken from the \
+         other? Give both as they were logged"
     ))
 }
 

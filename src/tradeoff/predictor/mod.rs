@@ -10,7 +10,9 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use lunula_predictor::{Dataset, Kind, LeastSquaresOptions, Predictor, Recipe, Solver, fit_linear, linear_f0, score};
+use lunula_predictor::{
+    Dataset, Kind, LeastSquaresOptions, Predictor, Recipe, Solver, fit_linear, linear_f0, recording_hashes, score,
+};
 use ndarray::{Array2, ArrayView2};
 
 use crate::predictor::{Target, Wanted, read_data};
@@ -103,11 +105,11 @@ fn problem(close_bits: i32) -> String {
 /// # Errors
 /// Recordings that can't be read, with their file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
-    let [train, test] = data(settings)?;
+    let ([train, test], warnings) = data(settings)?;
     let effort = &settings.effort;
     // One thread, as the times of all jobs here are.
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let mut measured = Measured::default();
+    let mut measured = Measured { refused: warnings, ..Measured::default() };
     let models = models(effort.quick);
     let fits = in_turns(&models, effort, |&(kind, restarts), _| one.install(|| fit(kind, restarts, &train)))?;
     let predicted =
@@ -142,14 +144,21 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     Ok(measured)
 }
 
-/// The recordings to train on, and those that errors are of.
+/// The recordings to train on, and those that errors are of; and what is doubtful about them.
 ///
 /// # Errors
 /// Recordings that can't be read, with their file.
-pub fn data(settings: &Settings) -> anyhow::Result<[Dataset; 2]> {
+pub fn data(settings: &Settings) -> anyhow::Result<([Dataset; 2], Vec<String>)> {
     let target = Target::parse("force").map_err(anyhow::Error::msg)?;
     let wanted = Wanted { targets: target.columns().to_vec(), ..Wanted::default() };
-    Ok([read_data(&settings.train, &wanted)?.data, read_data(&settings.test, &wanted)?.data])
+    let [train, test] = [read_data(&settings.train, &wanted)?, read_data(&settings.test, &wanted)?];
+    let trained = recording_hashes(&train.data);
+    let recordings = test.data.recordings().iter().zip(recording_hashes(&test.data));
+    let again = recordings.filter(|(_, hash)| trained.contains(hash)).map(|(one, _)| {
+        format!("{} is trained on as well: its error is that of the fit, which flatters; give another", one.name)
+    });
+    let warnings = again.chain(train.warnings).chain(test.warnings).collect();
+    Ok(([train.data, test.data], warnings))
 }
 
 /// The problems with an exact solution, each with the name of its error.

@@ -96,6 +96,12 @@ impl Load {
         Ok(Load { kind: Kind::Sine(mean_pa, amplitude_pa, frequency_hz), breakpoints: vec![] })
     }
 
+    /// How often a sine repeats, 1/s; none of other loads.
+    #[must_use]
+    pub fn frequency_hz(&self) -> Option<f64> {
+        if let Kind::Sine(.., frequency_hz) = self.kind { Some(frequency_hz) } else { None }
+    }
+
     /// Straight between the rows of a table, its first and last value held outside. Every time is a breakpoint.
     pub fn table(times_s: &[f64], values_pa: &[f64]) -> Result<Load, LoadFault> {
         if times_s.is_empty() || times_s.len() != values_pa.len() {

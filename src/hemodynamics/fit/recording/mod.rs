@@ -201,10 +201,10 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             warnings.extend(loads.filter_map(held));
         }
         None => {
-            let loads = needed.iter().filter_map(|name| read.get(name));
+            let mut loads = needed.iter().filter_map(|name| read.get(name));
             // A series of growing loads has other columns that grow.
             let turns = |load: &[f64]| !load.is_sorted() && !load.is_sorted_by(|a, b| a >= b);
-            warnings.extend(loads.map(turns).any(|turns| turns).then(|| rows.like_a_time(&used)).flatten());
+            warnings.extend(loads.any(turns).then(|| rows.like_a_time(&used)).flatten());
         }
     }
     Ok(ReadRecording {
