@@ -11,8 +11,8 @@ use crate::vision::Corners;
 pub(super) const FEWEST_VIEWS: usize = 3;
 /// Fewer are warned of (assumed, after OpenCV's advice of 10).
 const FEW_VIEWS: usize = 8;
-/// A board whose corners are no further apart in two views, mean in pixels, rests (assumed: noise moves corners by 0.1 px,
-/// a hand that means to move it by tens).
+/// A board whose corners are no further apart in two views, mean in pixels, rests (assumed: noise moves corners by 0.1
+/// px, a hand that means to move it by tens).
 const SAME_PX: f64 = 2.0;
 /// Boards whose normals are all within so much of each other are alike, degrees (assumed).
 const LEAST_SPREAD_DEG: f64 = 6.0;

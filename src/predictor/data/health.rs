@@ -1,6 +1,7 @@
 //! Photodiodes and cells that show nothing, columns that are cut off at the end of the recorded range, photodiodes
 //! whose clock is another than that of what was measured beside them; files that contradict each other.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use lunula_predictor::{Apart, Dataset, Delay, Difference, Mismatch, Recording, apart, delays, mismatches};
@@ -199,8 +200,9 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
 
 /// What to say where files that are not known to be several persons' are as different as these.
 fn of_several_persons(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Option<String> {
-    let [first, others @ ..] = data.recordings() else { return None };
-    if others.iter().any(|one| one.subject != first.subject) {
+    // Where nobody says whose a file is, it stands for a person.
+    let persons = data.recordings().iter().map(|one| one.subject.as_str()).filter(|person| !names.contains(person));
+    if persons.collect::<BTreeSet<_>>().len() > 1 {
         return None;
     }
     let Apart { part, target, times } = apart(data, parts)?;
