@@ -32,6 +32,17 @@ fn phantom(dir: &Dir, [subject, session, seed]: [&str; 3], protocol: &str, senso
     dir.lunula(&[&person[..], &how].concat()).expect(0);
 }
 
+/// The lit rows of a log, without the column that says so.
+fn write_lit(dir: &Dir, log: &str, name: &str) {
+    let log = std::fs::read_to_string(dir.path(log)).expect("a log");
+    let lit = log.lines().filter(|line| line.split(',').nth(1) != Some("0"));
+    let table = lit.map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        [&cells[..1], &cells[2..]].concat().join(",") + "\n"
+    });
+    dir.write(name, table.collect::<String>());
+}
+
 #[test]
 fn files_that_contradict_each_other_are_warned_of() {
     let dir = Dir::new();
@@ -117,13 +128,7 @@ fn a_column_that_hangs_is_warned_of() {
     hangs(100.0, 112.0, 12..13, Some("-9")).says("a.csv: Fz_N doesn't change by a digit in 150 rows");
     // A log's reader sees a photodiode that hangs, a table's doesn't.
     hangs(100.0, 112.0, 5..6, Some("3.1")).says("a.csv: P4 does not move at all");
-    let log = std::fs::read_to_string(dir.path("a.csv")).expect("a log");
-    let lit = log.lines().filter(|line| line.split(',').nth(1) != Some("0"));
-    let table = lit.map(|line| {
-        let cells: Vec<&str> = line.split(',').collect();
-        [&cells[..1], &cells[2..]].concat().join(",") + "\n"
-    });
-    dir.write("t.csv", table.collect::<String>());
+    write_lit(&dir, "a.csv", "t.csv");
     let answer = dir.lunula(&["train", "t.csv", "--target", "force", "--out", "m.json"]).expect(0);
     answer.says("t.csv: P4 doesn't change by a digit");
     // All of them, whatever the force does.
@@ -173,13 +178,7 @@ fn files_of_other_mountings_persons_and_lights_are_warned_of() {
     phantom(&dir, ["3", "1", "5"], "touch", "formulae", "c");
     let another = train("c/log.csv");
     assert!(another.contains("times the error in F") && another.contains("is that another finger"), "{another}");
-    let log = std::fs::read_to_string(dir.path("b/log.csv")).expect("a log");
-    let lit = log.lines().filter(|line| line.split(',').nth(1) != Some("0"));
-    let lit = lit.map(|line| {
-        let cells: Vec<&str> = line.split(',').collect();
-        [&cells[..1], &cells[2..]].concat().join(",") + "\n"
-    });
-    dir.write("lit.csv", lit.collect::<String>());
+    write_lit(&dir, "b/log.csv", "lit.csv");
     let lost = train("lit.csv");
     assert!(lost.contains("lit.csv has no column `led`, and a/log.csv has"), "{lost}");
     for (folder, log) in [("train", "a"), ("test", "a")] {

@@ -132,7 +132,7 @@ impl Rows {
     /// What to say of a column that is not `used` and grows as times do, of a table without times.
     pub(in crate::hemodynamics) fn like_a_time(&self, used: &[&str]) -> Option<String> {
         let Source::Table(table) = &self.from else { return None };
-        let unused = self.names.iter().filter(|own| !used.contains(&own.as_str()));
+        let mut unused = self.names.iter().filter(|own| !used.contains(&own.as_str()));
         let is_like = |name: &&String| {
             let values = table.values(name).unwrap_or_default();
             let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -144,7 +144,7 @@ impl Rows {
             let is_count = values.iter().all(|value| value.fract() == 0.0) && usual == 1.0;
             steps.iter().all(|step| *step > 0.0) && even as f64 >= EVEN * steps.len() as f64 && !is_count
         };
-        unused.clone().find(is_like).map(|name| {
+        unused.find(is_like).map(|name| {
             format!(
                 "the column `{name}` grows evenly from row to row: is it the time? As no column is called `{TIME}`, \
                  rows are taken for equilibria; call it so, in seconds, where they follow each other"

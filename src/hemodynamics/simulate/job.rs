@@ -201,8 +201,8 @@ fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &Simul
 
 /// Blood's pressure repeats less often, 1/s (assumed: 300 beats a minute).
 const FAST_HZ: f64 = 5.0;
-/// A wall that moves by more nominal diameters is of no vessel (measured: 1.1 at most with the thesis' parameters, 7
-/// with extreme ones that may be).
+/// A lumen of more nominal diameters is no vessel's (measured: 2.1 at most with the thesis' parameters, 8 with extreme
+/// ones that may be, 11 and more where a parameter was in another unit).
 const WIDE: f64 = 10.0;
 
 /// What to say of vessels that grow beyond anything.

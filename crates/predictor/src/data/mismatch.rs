@@ -10,10 +10,10 @@
 //! exchanged, each column scaled, and the same the other way round. Only what explains both is said. Of 182 pairs of
 //! phantom logs of touch that agree (persons, days, kinds of photodiodes) none was called a mismatch; with an exchange
 //! or a sign made in one of two logs of a person 218 of 240 were found, gains of 0.5 and 2 139 of 192, forces turned by
-//! 90 and 180 degrees 48 of 48, by 45 degrees 9 of 24, none under another name (`cargo test --test all mismatches_of_phantom_logs -- --ignored --nocapture`). Bending is hardly linear
-//! from day to day: little is found there. Beside a model of one log 334 of 336 exchanges in another of the person are
-//! found by a linear model, 112 by a quadratic one, none under another name, and none in 728 that agree
-//! (`exchanges_beside_models_of_phantom_logs`).
+//! 90 and 180 degrees 48 of 48, by 45 degrees 9 of 24, none under another name (`cargo test --test all
+//! mismatches_of_phantom_logs -- --ignored --nocapture`). Bending is hardly linear from day to day: little is found
+//! there. Beside a model of one log 334 of 336 exchanges in another of the person are found by a linear model, 112 by a
+//! quadratic one, none under another name, and none in 728 that agree (`exchanges_beside_models_of_phantom_logs`).
 
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ const LESS: f64 = 0.05;
 const RIVAL: f64 = 1.5;
 /// A sensor that is put on again changes its gains by less than this (assumed).
 const GAIN: f64 = 1.7;
-/// A transducer that is mounted again is turned by less, degrees (assumed).
+/// Axes of a transducer that is mounted again are turned by less, degrees (assumed).
 const TURN_DEG: f64 = 15.0;
 /// How targets that are forces, newtons along an axis each, are called at their end.
 const FORCE: &str = "_N";
@@ -252,7 +252,7 @@ fn is_mirror_image(one: Difference, other: Difference) -> bool {
     sign(one) && order(other) || order(one) && sign(other)
 }
 
-/// Whether a transducer that was mounted again is turned by less.
+/// Whether axes are turned by more than those of a transducer that was mounted again.
 fn is_turn(by_deg: f64) -> bool {
     (TURN_DEG..360.0 - TURN_DEG).contains(&by_deg.rem_euclid(360.0))
 }
