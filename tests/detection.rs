@@ -276,9 +276,29 @@ fn annotated(mask: &GrayImage) -> Vec<Outline> {
 }
 
 mod real_data {
+    use std::ffi::OsString;
+
     use super::*;
     use crate::util::Dir;
     use crate::util::real_data::real_data;
+
+    /// A real photograph and the mask of its nails.
+    struct Hand {
+        file: OsString,
+        photo: DynamicImage,
+        mask: DynamicImage,
+    }
+
+    fn hands() -> impl Iterator<Item = Hand> {
+        let folder = real_data("nail/vpapenko_cc0");
+        let mut files: Vec<OsString> =
+            std::fs::read_dir(folder.join("images")).unwrap().map(|file| file.unwrap().file_name()).collect();
+        files.sort();
+        files.into_iter().map(move |file| {
+            let [photo, mask] = ["images", "masks"].map(|kind| image::open(folder.join(kind).join(&file)).unwrap());
+            Hand { file, photo, mask }
+        })
+    }
 
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
@@ -288,13 +308,11 @@ mod real_data {
         const PRECISION: f64 = 0.95;
         /// Of the nails, by confident finds at IoU 0.5 and 0.7.
         const RECALL: [f64; 2] = [0.85, 0.7];
-        let folder = real_data("nail/vpapenko_cc0");
         let (mut found, mut right, mut nails) = (0, [0, 0], 0);
-        for file in std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().path()) {
-            let mask = image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap();
+        for Hand { photo, mask, .. } in hands() {
             let truth = annotated(&mask.to_luma8());
             nails += truth.len();
-            for nail in detect(&image::open(file).unwrap(), &DetectOptions::default()).nails {
+            for nail in detect(&photo, &DetectOptions::default()).nails {
                 let iou = truth.iter().map(|t| t.iou(&nail.outline)).fold(0.0, f64::max);
                 found += 1;
                 right = [right[0] + usize::from(iou >= 0.5), right[1] + usize::from(iou >= 0.7)];
@@ -310,18 +328,8 @@ mod real_data {
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn outlines_drawn_beside_real_nails_are_seen() {
-        let folder = real_data("nail/vpapenko_cc0");
-        let mut files: Vec<_> =
-            std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().file_name()).collect();
-        files.sort();
-        let hands: Vec<(DynamicImage, Vec<Outline>)> = files
-            .iter()
-            .map(|file| {
-                let mask = image::open(folder.join("masks").join(file)).unwrap();
-                let photo = image::open(folder.join("images").join(file)).unwrap();
-                (photo, outline::outlines_from_mask(&mask).unwrap().nails)
-            })
-            .collect();
+        let with_outlines = |hand: Hand| (hand.photo, outline::outlines_from_mask(&hand.mask).unwrap().nails);
+        let hands: Vec<(DynamicImage, Vec<Outline>)> = hands().map(with_outlines).collect();
         let changed = |nail: &Outline, k: usize, by: f64, times: f64| {
             let moments = Moments::of(nail);
             let away = Axis::from_clockwise_rad(k as f64 * std::f64::consts::FRAC_PI_4).distal();
@@ -356,10 +364,8 @@ mod real_data {
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn close_ups_of_real_nails_are_found_with_confidence() {
-        let folder = real_data("nail/vpapenko_cc0");
         let (mut pictures, mut found, mut wrong) = (0, 0, Vec::new());
-        for file in std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().path()) {
-            let mask = image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap();
+        for Hand { file, photo, mask } in hands() {
             let nails = annotated(&mask.to_luma8());
             let largest = nails.iter().max_by(|a, b| a.area_px2().total_cmp(&b.area_px2())).unwrap();
             let by = 190.0 / largest.area_px2().sqrt();
@@ -376,7 +382,7 @@ mod real_data {
                 let [width, height] = [part.width(), part.height()].map(|side| (f64::from(side) * by) as u32);
                 part.resize_exact(width, height, image::imageops::FilterType::CatmullRom)
             };
-            let (picture, truth) = (close_up(&image::open(&file).unwrap()), annotated(&close_up(&mask).to_luma8()));
+            let (picture, truth) = (close_up(&photo), annotated(&close_up(&mask).to_luma8()));
             let nails = detect(&picture, &DetectOptions::default()).nails;
             let fit = |nail: &Detected| truth.iter().map(|t| t.iou(&nail.outline)).fold(0.0, f64::max);
             let is_large = |nail: &Detected| nail.outline.area_px2() >= 0.5 * 190.0_f64.powi(2);
@@ -393,10 +399,7 @@ mod real_data {
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn photographs_out_of_focus_and_overexposed_ones_are_warned_of() {
         let dir = Dir::new();
-        let mut files: Vec<_> = std::fs::read_dir(real_data("nail/vpapenko_cc0/images")).unwrap().collect();
-        files.sort_by_key(|file| file.as_ref().unwrap().file_name());
-        for (k, file) in files.into_iter().take(8).enumerate() {
-            let picture = image::open(file.unwrap().path()).unwrap();
+        for (k, Hand { photo: picture, .. }) in hands().take(8).enumerate() {
             picture.save(dir.place(&format!("sharp/{k}.png"))).unwrap();
             picture.blur(4.0).save(dir.place(&format!("blurred/{k}.png"))).unwrap();
             let mut bright = picture.to_rgb8();

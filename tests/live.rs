@@ -4,14 +4,10 @@
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{TcpListener, TcpStream};
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use crate::util::Dir;
-
-/// What does not come within this never comes.
-const PATIENCE: Duration = Duration::from_secs(20);
+use crate::util::running::{PATIENCE, start};
 
 /// A row: P1 is 1 V and half a volt per newton of pressing.
 fn row(t_s: f64, pressing_n: f64) -> String {
@@ -44,62 +40,6 @@ fn desk() -> Dir {
     dir.train("train.csv", "Fz_N", "m.json", &["-q"]).expect(0);
     dir.write("sw.toml", "on_N = 0.5\noff_N = 0.3\nwatchdog_s = 0.3\nname = \"x+\"\nfinger = \"index\"\n");
     dir
-}
-
-struct Running {
-    child: Child,
-    lines: Receiver<String>,
-    said: Receiver<String>,
-}
-
-fn start(dir: &Dir, arguments: &[&str]) -> Running {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
-        .args(arguments)
-        .current_dir(dir.path(""))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary runs");
-    let (out, lines) = channel();
-    let stdout = BufReader::new(child.stdout.take().expect("a pipe"));
-    std::thread::spawn(move || stdout.lines().map_while(Result::ok).all(|line| out.send(line).is_ok()));
-    let (err, said) = channel();
-    let stderr = BufReader::new(child.stderr.take().expect("a pipe"));
-    std::thread::spawn(move || stderr.lines().map_while(Result::ok).all(|line| err.send(line).is_ok()));
-    Running { child, lines, said }
-}
-
-impl Running {
-    fn write(&mut self, text: &str) {
-        let to = self.child.stdin.as_mut().expect("open");
-        to.write_all(text.as_bytes()).and_then(|()| to.flush()).expect("the program reads");
-    }
-
-    /// Waits for a line on standard error that holds these words.
-    #[track_caller]
-    fn hears(&self, words: &str) -> String {
-        let start = Instant::now();
-        while let Ok(line) = self.said.recv_timeout(PATIENCE.saturating_sub(start.elapsed())) {
-            if line.contains(words) {
-                return line;
-            }
-        }
-        panic!("never said `{words}`");
-    }
-
-    fn end(mut self) -> (i32, Vec<String>, String) {
-        drop(self.child.stdin.take());
-        let start = Instant::now();
-        let code = loop {
-            if let Some(status) = self.child.try_wait().expect("a child") {
-                break status.code().unwrap_or(-1);
-            }
-            assert!(start.elapsed() < PATIENCE, "the program does not end");
-            std::thread::sleep(Duration::from_millis(5));
-        };
-        (code, self.lines.iter().collect(), self.said.iter().collect::<Vec<_>>().join("\n"))
-    }
 }
 
 #[test]

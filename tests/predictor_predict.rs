@@ -2,17 +2,15 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
 
+use crate::util::page::ends;
+use crate::util::running::start;
 use crate::util::sensor::{Recording, near};
 use crate::util::{Answer, Dir};
 
 /// The model is exact to rounding, newtons (measured: 2e-16) and degrees (3e-14).
 const EXACT: f64 = 1e-13;
-/// An answer that takes longer never comes.
-const PATIENCE: Duration = Duration::from_secs(20);
 
 type Row = BTreeMap<String, String>;
 
@@ -229,70 +227,12 @@ fn parquet_is_read_and_written_alike() {
     assert_eq!(dir.text("q.csv"), dir.text("q2.csv"));
 }
 
-/// A running `lunula predict .. -`, its lines as they come.
-struct Running {
-    child: Child,
-    to: Option<ChildStdin>,
-    lines: Receiver<String>,
-}
-
-impl Running {
-    fn start(dir: &Dir, arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
-            .arg("predict")
-            .args(arguments)
-            .current_dir(dir.path(""))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the binary runs");
-        let (tell, lines) = channel();
-        let out = BufReader::new(child.stdout.take().expect("a pipe"));
-        std::thread::spawn(move || out.lines().map_while(Result::ok).all(|line| tell.send(line).is_ok()));
-        Self { to: child.stdin.take(), child, lines }
-    }
-
-    fn write(&mut self, text: &str) {
-        let to = self.to.as_mut().expect("open");
-        to.write_all(text.as_bytes()).and_then(|()| to.flush()).expect("the program reads");
-    }
-
-    #[track_caller]
-    fn line(&self) -> String {
-        self.lines.recv_timeout(PATIENCE).expect("an answer before the next row")
-    }
-
-    /// Closes the stream and waits.
-    fn end(mut self) -> Answer {
-        drop(self.to.take());
-        let code = wait(&mut self.child);
-        let mut stderr = String::new();
-        self.child.stderr.take().expect("a pipe").read_to_string(&mut stderr).expect("text");
-        let rest: Vec<String> = self.lines.iter().collect();
-        Answer { code, stdout: rest.iter().map(|line| line.to_owned() + "\n").collect(), stderr }
-    }
-}
-
-fn wait(child: &mut Child) -> i32 {
-    let start = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait().expect("a child") {
-            return status.code().unwrap_or(-1);
-        }
-        if start.elapsed() > PATIENCE {
-            child.kill().expect("our own child");
-            panic!("the program does not end");
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
-
 /// A whole text through a stream.
 fn streamed(dir: &Dir, arguments: &[&str], text: &str) -> Answer {
-    let mut running = Running::start(dir, arguments);
+    let mut running = start(dir, &[&["predict"], arguments].concat());
     running.write(text);
-    running.end()
+    let (code, lines, stderr) = running.end();
+    Answer { code, stdout: lines.iter().map(|line| line.to_owned() + "\n").collect(), stderr }
 }
 
 #[test]
@@ -341,7 +281,7 @@ fn each_row_is_answered_before_the_next_is_written() {
     let fz = data.numbers("Fz_N");
     let csv = data.csv();
     let mut lines = csv.lines();
-    let mut running = Running::start(&dir, &["force.json", "posture.json", "-"]);
+    let mut running = start(&dir, &["predict", "force.json", "posture.json", "-"]);
     running.write(&format!("{}\n", lines.next().unwrap()));
     assert_eq!(running.line(), "time_s,Fx_N,Fy_N,Fz_N,J2_deg,contact");
     for (k, line) in lines.enumerate() {
@@ -353,8 +293,7 @@ fn each_row_is_answered_before_the_next_is_written() {
         let cells: Vec<&str> = answer.split(',').collect();
         near(&[cells[3].parse().unwrap()], &[fz[k]], EXACT);
     }
-    let ended = running.end().expect(0);
-    assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
+    assert_eq!(running.end(), (0, vec![], String::new()));
 }
 
 #[test]
@@ -362,10 +301,8 @@ fn a_stream_warns_of_an_edited_model_before_its_first_row() {
     let dir = models();
     let edited = dir.text("force.json").replacen("\"low\": 2", "\"low\": 1", 1);
     dir.write("edited.json", edited);
-    let mut running = Running::start(&dir, &["edited.json", "-"]);
-    let mut said = String::new();
-    BufReader::new(running.child.stderr.take().expect("a pipe")).read_line(&mut said).expect("text");
-    assert!(said.contains("edited.json: was edited after it was trained"), "{said}");
+    let mut running = start(&dir, &["predict", "edited.json", "-"]);
+    running.hears("edited.json: was edited after it was trained");
     running.write(&Recording::of(0..1).csv());
     assert_eq!((running.line().as_str(), running.line().split(',').count()), ("time_s,Fx_N,Fy_N,Fz_N", 4));
 }
@@ -451,9 +388,10 @@ fn a_reader_that_goes_away_ends_the_stream_quietly() {
     // The program may be gone before all is written.
     let _ = to.write_all(rest.as_bytes());
     drop(to);
-    assert_eq!(wait(&mut child), 0);
+    let mut said = child.stderr.take().expect("a pipe");
+    assert_eq!(ends(child), 0);
     let mut stderr = String::new();
-    child.stderr.take().expect("a pipe").read_to_string(&mut stderr).expect("text");
+    said.read_to_string(&mut stderr).expect("text");
     assert_eq!(stderr, "");
 }
 

@@ -279,6 +279,7 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     of("still.csv", "time_s,Fz_N", &|k| vec![wavers(if (200..500).contains(&k) { 200 } else { k })])
         .says("finger: Fz_N keep(s) all values in 1 stretch(es), the longest 300 samples from 2.000 to 4.990 s");
     of("copied.csv", two, &|k| vec![wavers(k); 2]).says("middle: Fz_N is that of index in every row");
+    of("off.csv", two, &|k| vec![wavers(k), 0.0]).says("middle: Fz_N is the same to the last digit in all ");
     dir.write("again.csv", csv("time_s,Fz_N", &up));
     run(&dir, "up.csv again.csv --out t")
         .expect(0)

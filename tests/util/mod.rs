@@ -6,6 +6,7 @@ pub mod browser;
 pub mod desk;
 pub mod page;
 pub(crate) mod real_data;
+pub(crate) mod running;
 pub mod sensor;
 
 use std::path::{Path, PathBuf};

@@ -161,8 +161,14 @@ fn copies(fingers: &mut [FingerTrial]) {
     }
 }
 
-/// What to say of a force that keeps its value while a finger presses.
+/// So many rows of one value are no chance.
+const UNMOVED: usize = 50;
+
+/// What to say of a force that keeps its value while a finger presses, or in all rows.
 fn stands(time_s: &[f64], force_n: &[f64]) -> Option<String> {
+    if force_n.len() >= UNMOVED && force_n.iter().all(|value| *value == force_n[0]) {
+        return Some(format!("{FORCE} is the same to the last digit in all {} rows: not connected?", force_n.len()));
+    }
     let mut still = Still::new(1);
     for (time_s, force_n) in time_s.iter().zip(force_n).filter(|(_, force_n)| **force_n > PRESSES_N) {
         still.push(*time_s, std::iter::once(*force_n));

@@ -108,9 +108,14 @@ fn weak(report: &TuneReport, options: &TuneOptions) -> Vec<String> {
     let mut warnings = Vec::new();
     let judged = report.held_out.as_ref().unwrap_or(&report.chosen);
     if report.held_out.is_none() {
-        let what = "there is no other recording to judge the choice on: it was judged on what chose it, which \
-                    flatters; name several recordings, or hold one back for `lunula switch evaluate`";
-        warnings.push(what.to_owned());
+        let why = match report.recordings.len() {
+            0 | 1 => "there is no other recording to judge the choice on",
+            _ => "without one of the recordings, the others allow no choice that could be judged on it",
+        };
+        warnings.push(format!(
+            "{why}: it was judged on what chose it, which flatters; name several recordings, or hold one back for \
+             `lunula switch evaluate`"
+        ));
     }
     let goal = options.false_per_hour;
     if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_low > goal) {
