@@ -323,8 +323,8 @@ mod real_data {
         assert!((0..2).all(|k| right[k] as f64 >= RECALL[k] * nails as f64), "{right:?} of {nails}");
     }
 
-    /// Outlines of masks, moved by a share of their long axis in eight directions, or larger or smaller, and those of
-    /// the next photograph: what is seen elsewhere, and how often no nail is seen.
+    /// Outlines of masks, moved by a share of their long axis in eight directions, or larger or smaller, in colour and in
+    /// grey: how many are seen elsewhere, and where no nail is seen.
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn outlines_drawn_beside_real_nails_are_seen() {
