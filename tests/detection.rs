@@ -323,8 +323,8 @@ mod real_data {
         assert!((0..2).all(|k| right[k] as f64 >= RECALL[k] * nails as f64), "{right:?} of {nails}");
     }
 
-    /// Outlines of masks, moved by a share of their long axis in eight directions, or larger or smaller, in colour and in
-    /// grey: how many are seen elsewhere, and where no nail is seen.
+    /// Outlines of masks, moved by a share of their long axis in eight directions, or larger or smaller, in colour and
+    /// in grey: how many are seen elsewhere, and where no nail is seen.
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn outlines_drawn_beside_real_nails_are_seen() {
@@ -348,7 +348,7 @@ mod real_data {
                     let photo = if grey { photo.grayscale() } else { photo.clone() };
                     let drawn: Vec<Outline> =
                         outlines.iter().enumerate().map(|(k, nail)| changed(nail, k, by, times)).collect();
-                    let seen = outline::unlike(&photo, &drawn.iter().collect::<Vec<_>>()).unwrap();
+                    let seen = outline::unlike(&photo, &drawn.iter().map(Some).collect::<Vec<_>>()).unwrap();
                     nails += seen.len();
                     elsewhere += seen.iter().filter(|one| matches!(one, Some(Unlike::Elsewhere(_)))).count();
                     nothing += seen.iter().filter(|one| matches!(one, Some(Unlike::Nothing))).count();

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Command, Stdio};
 
 use crate::util::page::ends;
-use crate::util::running::start;
+use crate::util::running::{spawned, start};
 use crate::util::sensor::{Recording, near};
 use crate::util::{Answer, Dir};
 
@@ -369,14 +368,7 @@ fn a_wrong_cell_costs_its_row() {
 #[test]
 fn a_reader_that_goes_away_ends_the_stream_quietly() {
     let dir = models();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
-        .args(["predict", "force.json", "-"])
-        .current_dir(dir.path(""))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary runs");
+    let mut child = spawned(&dir, &["predict", "force.json", "-"]);
     let mut to = child.stdin.take().unwrap();
     let csv = Recording::of(0..500).csv();
     let (first, rest) = csv.split_at(csv.match_indices('\n').nth(3).unwrap().0 + 1);

@@ -145,8 +145,7 @@ impl Finder {
         let found = one_of(listed.nails, [picture.image.width(), picture.image.height()]);
         let nail = found.map_err(|why| NotOne { why, seen })?;
         let is_drawn = nail.source != Source::Detected;
-        let drawn: Vec<&Outline> = is_drawn.then_some(&nail.outline).into_iter().collect();
-        let seen = unlike(&picture.image, &drawn);
+        let seen = unlike(&picture.image, &[is_drawn.then_some(&nail.outline)]);
         let seen = seen.map_err(|why| NotOne { why: why.to_string(), seen: Vec::new() })?.pop().flatten();
         let instead = seen.map(|seen| nail.frame.instead(&seen));
         Ok(FirstNail { mistaken: Hues::of(&picture.image, &nail.frame).mistaken, instead, ..nail })

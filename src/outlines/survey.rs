@@ -108,15 +108,12 @@ fn of_file(home: &Path, picture: &Photograph, options: &EditOptions) -> Result<(
     let mut nails: Vec<Nail> = found.iter().map(|one| nail_of(&one.nail)).collect();
     options.outlines.complete_axes(picture, &mut nails);
     let is_doubtful = |one: &Labelled| file.shapes[one.polygon].label.trim().eq_ignore_ascii_case(DOUBTFUL);
-    let drawn: Vec<&Outline> = nails.iter().filter_map(|nail| nail.outline.as_ref()).collect();
-    let mut unlike = unlike(&picture.image, &drawn).map_err(|why| why.to_string())?.into_iter();
-    let instead = nails.iter().map(|nail| {
-        let outline = nail.outline.as_ref()?;
-        let (seen, axis) = (unlike.next().flatten()?, nail.axis?);
-        Some(format!("{}, by the network that finds nails", NailFrame::new(outline, axis).ok()?.instead(&seen)))
-    });
-    let instead: Vec<Option<String>> = instead.collect();
-    let finds = found.iter().zip(nails).zip(instead).map(|((one, nail), instead)| {
+    let drawn: Vec<Option<&Outline>> = nails.iter().map(|nail| nail.outline.as_ref()).collect();
+    let unlike = unlike(&picture.image, &drawn).map_err(|why| why.to_string())?;
+    let finds = found.iter().zip(nails).zip(unlike).map(|((one, nail), seen)| {
+        let frame = || NailFrame::new(nail.outline.as_ref()?, nail.axis?).ok();
+        let instead =
+            seen.and_then(|seen| Some(format!("{}, by the network that finds nails", frame()?.instead(&seen))));
         let mut why = nail.reason;
         if is_doubtful(one) && why.is_empty() {
             let remark = file.shapes[one.polygon].description.clone().filter(|text| !text.is_empty());

@@ -20,16 +20,21 @@ pub struct Running {
     pub said: Receiver<String>,
 }
 
-/// Starts the binary in a folder.
-pub fn start(dir: &Dir, arguments: &[&str]) -> Running {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
+/// Starts the binary in a folder, to be written to and read from.
+pub fn spawned(dir: &Dir, arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_lunula"))
         .args(arguments)
         .current_dir(dir.path(""))
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .expect("the binary runs");
+        .expect("the binary runs")
+}
+
+/// The same, its lines taken as they come.
+pub fn start(dir: &Dir, arguments: &[&str]) -> Running {
+    let mut child = spawned(dir, arguments);
     let (out, lines) = channel();
     let stdout = BufReader::new(child.stdout.take().expect("a pipe"));
     std::thread::spawn(move || stdout.lines().map_while(Result::ok).all(|line| out.send(line).is_ok()));

@@ -324,20 +324,19 @@ impl Work<'_> {
         let mut found = if may_draw { nails.clone() } else { Vec::new() };
         done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
         let several = nails.len() > 1;
-        let drawn = nails.iter().filter(|nail| nail.source != Source::Detected);
-        let drawn: Vec<&Outline> = drawn.filter_map(|nail| nail.outline.as_ref()).collect();
-        let mut unlike = match self.options.check_outlines {
-            true => match self.stages.time("check outlines", || unlike(&picture.image, &drawn)) {
-                Ok(all) => all.into_iter(),
-                Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
-            },
-            false => Vec::new().into_iter(),
+        let is_checked = |nail: &Nail| self.options.check_outlines && nail.source != Source::Detected;
+        let drawn: Vec<Option<&Outline>> =
+            nails.iter().map(|nail| nail.outline.as_ref().filter(|_| is_checked(nail))).collect();
+        let look = || unlike(&picture.image, &drawn);
+        let timed = self.options.check_outlines;
+        let unlike = match if timed { self.stages.time("check outlines", look) } else { look() } {
+            Ok(unlike) => unlike,
+            Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
         };
         let mut details = Vec::new();
         let Memory { normalizer, pictures, scratch, .. } = memory;
-        for (number, nail) in (1..).zip(nails) {
+        for (number, (nail, seen)) in (1..).zip(nails.into_iter().zip(unlike)) {
             let mut row = NailRow::new(index, number, &nail);
-            let seen = nail.outline.as_ref().and_then(|_| unlike.next().flatten());
             let mut thumbnail = None;
             match self.one_nail(&picture, nail, &mut row, normalizer) {
                 Ok(normalized) => {

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use lunula_predictor::{Apart, Dataset, Delay, Difference, Mismatch, Recording, apart, delays, mismatches};
+use lunula_predictor::{Apart, Dataset, Delay, Difference, Mismatch, Parts, Recording, delays};
 use ndarray::{Axis, Slice};
 
 use super::blocks::TURNED;
@@ -155,9 +155,10 @@ pub(super) fn clocks(data: &Dataset) -> Option<String> {
 
 /// What to say of files, as ranges of rows, that contradict the others; `orders` are those of [`TURNED`], of cells.
 pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>], names: &[&str]) -> Vec<String> {
-    let all = mismatches(data, parts, orders);
+    let Some(compared) = Parts::of(data, parts) else { return Vec::new() };
+    let all = compared.mismatches(orders);
     if all.is_empty() {
-        return of_several_persons(data, parts, names).into_iter().collect();
+        return of_several_persons(data, &compared, names).into_iter().collect();
     }
     let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
     let looks = |difference| match difference {
@@ -199,13 +200,13 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
 }
 
 /// What to say where files that are not known to be several persons' are as different as these.
-fn of_several_persons(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Option<String> {
+fn of_several_persons(data: &Dataset, parts: &Parts, names: &[&str]) -> Option<String> {
     // Where nobody says whose a file is, it stands for a person.
     let persons = data.recordings().iter().map(|one| one.subject.as_str()).filter(|person| !names.contains(person));
     if persons.collect::<BTreeSet<_>>().len() > 1 {
         return None;
     }
-    let Apart { part, target, times } = apart(data, parts)?;
+    let Apart { part, target, times } = parts.apart()?;
     Some(format!(
         "one linear model of all files leaves {times:.1} times the error in {} that one of each file leaves, and fits \
          {} worst: is that another finger, or were transducer or sensor mounted otherwise? Models are of one person",

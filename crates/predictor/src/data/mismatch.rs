@@ -2,9 +2,9 @@
 //! agrees with a model on which column is which.
 //!
 //! In: a [`Dataset`] and its parts. Out: of each part the one column, or the two, that look exchanged, scaled or turned
-//! in sign beside the other parts, or two forces that look measured along other axes ([`mismatches`]); and whether one
-//! model of all parts is much worse than one of each ([`apart`]). In: recordings, and what a model makes of them with
-//! their inputs in any order. Out: which two look exchanged ([`exchanged`]).
+//! in sign beside the other parts, or two forces that look measured along other axes ([`Parts::mismatches`]); and
+//! whether one model of all parts is much worse than one of each ([`Parts::apart`]). In: recordings, and what a model
+//! makes of them with their inputs in any order. Out: which two look exchanged ([`exchanged`]).
 //!
 //! A linear model (equations 10 to 13) of the other parts is tried on the part as it is and with each pair of columns
 //! exchanged, each column scaled, and the same the other way round. Only what explains both is said. Of 182 pairs of
@@ -82,42 +82,6 @@ pub struct Mismatch {
     pub mended: f64,
 }
 
-/// The parts, as ranges of rows, that contradict the others. Of two that contradict each other both are named: the rows
-/// do not say which is right. Nothing is said of parts with few rows for the inputs, or hidden inputs.
-///
-/// Inputs may stand in each other's place, or be scaled, one or two of them; where there are `orders`, as of a
-/// picture's cells, only all of them at once: of each order, which input comes in each one's place. Done twice it
-/// changes nothing.
-#[must_use]
-pub fn mismatches(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]) -> Vec<Mismatch> {
-    let inputs = data.inputs().len();
-    let has_rows = |rows: &Range<usize>| rows.len() >= ROWS * (1 + inputs);
-    if inputs == 0 || inputs > INPUTS || parts.iter().filter(|rows| has_rows(rows)).count() < 2 {
-        return Vec::new();
-    }
-    let moments: Vec<Moments> = parts.iter().map(|rows| Moments::of(data, rows)).collect();
-    let differs = |part: usize| {
-        let mut others = Moments::none(data);
-        let other = |&k: &usize| k != part && has_rows(&parts[k]);
-        (0..parts.len()).filter(other).for_each(|k| others.add(&moments[k]));
-        let both = [(&others, &moments[part]), (&moments[part], &others)];
-        let [there, back] = both.map(|(of, on)| explained(of, on, orders));
-        let ((difference, recorded, mended), (again, recorded_back, mended_back)) = (there?, back?);
-        let agree = match (difference, again) {
-            (Difference::Scaled { column, by }, Difference::Scaled { column: same, by: back }) => {
-                column == same && is_gain(by * back)
-            }
-            (Difference::Turned { columns, by_deg }, Difference::Turned { columns: same, by_deg: back }) => {
-                columns == same && !is_turn(by_deg + back)
-            }
-            (one, other) => one == other || is_mirror_image(one, other),
-        };
-        let matters = (recorded - mended).max(recorded_back - mended_back) >= LESS;
-        (agree && matters).then_some(Mismatch { part, difference, recorded, mended })
-    };
-    (0..parts.len()).filter(|&part| has_rows(&parts[part])).filter_map(differs).collect()
-}
-
 /// A part that one model of all parts fits worst, where that model is much worse than one of each part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Apart {
@@ -129,36 +93,79 @@ pub struct Apart {
     pub times: f64,
 }
 
-/// Whether one linear model of all parts, as ranges of rows, is much worse than one of each part, as it is of two
-/// persons. Nothing is said of parts with few rows for the inputs.
-#[must_use]
-pub fn apart(data: &Dataset, parts: &[Range<usize>]) -> Option<Apart> {
-    let inputs = data.inputs().len();
-    let large: Vec<usize> = (0..parts.len()).filter(|&part| parts[part].len() >= ROWS * (1 + inputs)).collect();
-    if inputs == 0 || inputs > INPUTS || large.len() < 2 {
-        return None;
+/// The parts of a dataset that have rows enough to be compared.
+#[derive(Debug, Clone)]
+pub struct Parts {
+    /// Each by its place among all, and its sums.
+    large: Vec<(usize, Moments)>,
+}
+
+impl Parts {
+    /// Of parts as ranges of rows. None where there are fewer than two with rows enough for the inputs, or hidden or
+    /// too many inputs.
+    #[must_use]
+    pub fn of(data: &Dataset, parts: &[Range<usize>]) -> Option<Self> {
+        let inputs = data.inputs().len();
+        let large: Vec<_> = parts.iter().enumerate().filter(|(_, rows)| rows.len() >= ROWS * (1 + inputs)).collect();
+        let is_comparable = (1..=INPUTS).contains(&inputs) && large.len() >= 2;
+        let sums = |(part, rows)| (part, Moments::of(data, rows));
+        is_comparable.then(|| Self { large: large.into_iter().map(sums).collect() })
     }
-    let moments: Vec<Moments> = large.iter().map(|&part| Moments::of(data, &parts[part])).collect();
-    let mut all = Moments::none(data);
-    moments.iter().for_each(|one| all.add(one));
-    let model = all.model()?;
-    let own = moments.iter().map(Moments::model).collect::<Option<Vec<_>>>()?;
-    let left = |target: usize| {
-        let column = inputs + target;
-        let both = moments.iter().zip(&own).map(|(one, own)| {
-            [&model, own].map(|model| one.unexplained_of(&model[target], column) * one.at(column, column))
-        });
-        both.collect::<Vec<[f64; 2]>>()
-    };
-    let of_target = |target: usize| {
-        let left = left(target);
-        let [pooled, alone] = [0, 1].map(|k| left.iter().map(|both| both[k]).sum::<f64>());
-        let worst = large.iter().zip(&left).max_by(|a, b| (a.1[0] / a.1[1]).total_cmp(&(b.1[0] / b.1[1])))?;
-        let matters = pooled - alone >= MATTERS * all.at(inputs + target, inputs + target);
-        let times = (pooled / alone).sqrt();
-        (matters && times >= MUCH && times.is_finite()).then_some(Apart { part: *worst.0, target, times })
-    };
-    (0..data.targets().len()).filter_map(of_target).max_by(|a, b| a.times.total_cmp(&b.times))
+
+    /// The sums of those that are wanted, by their place.
+    fn sum(&self, is_wanted: impl Fn(usize) -> bool) -> Moments {
+        let mut sum = self.large[0].1.nothing();
+        self.large.iter().filter(|(part, _)| is_wanted(*part)).for_each(|(_, one)| sum.add(one));
+        sum
+    }
+
+    /// Those that contradict the others. Of two that contradict each other both are named: the rows do not say which is
+    /// right. Nothing is said of hidden inputs.
+    ///
+    /// Inputs may stand in each other's place, or be scaled, one or two of them; where there are `orders`, as of a
+    /// picture's cells, only all of them at once: of each order, which input comes in each one's place. Done twice it
+    /// changes nothing.
+    #[must_use]
+    pub fn mismatches(&self, orders: &[Vec<usize>]) -> Vec<Mismatch> {
+        let differs = |(part, own): &(usize, Moments)| {
+            let others = self.sum(|other| other != *part);
+            let [there, back] = [(&others, own), (own, &others)].map(|(of, on)| explained(of, on, orders));
+            let ((difference, recorded, mended), (again, recorded_back, mended_back)) = (there?, back?);
+            let agree = match (difference, again) {
+                (Difference::Scaled { column, by }, Difference::Scaled { column: same, by: back }) => {
+                    column == same && is_gain(by * back)
+                }
+                (Difference::Turned { columns, by_deg }, Difference::Turned { columns: same, by_deg: back }) => {
+                    columns == same && !is_turn(by_deg + back)
+                }
+                (one, other) => one == other || is_mirror_image(one, other),
+            };
+            let matters = (recorded - mended).max(recorded_back - mended_back) >= LESS;
+            (agree && matters).then_some(Mismatch { part: *part, difference, recorded, mended })
+        };
+        self.large.iter().filter_map(differs).collect()
+    }
+
+    /// Whether one linear model of all is much worse than one of each, as it is of two persons.
+    #[must_use]
+    pub fn apart(&self) -> Option<Apart> {
+        let all = self.sum(|_| true);
+        let model = all.model()?;
+        let own = self.large.iter().map(|(_, one)| one.model()).collect::<Option<Vec<_>>>()?;
+        let of_target = |(target, column): (usize, usize)| {
+            let left = self.large.iter().zip(&own).map(|((_, one), own)| {
+                [&model, own].map(|model| one.unexplained_of(&model[target], column) * one.at(column, column))
+            });
+            let left: Vec<[f64; 2]> = left.collect();
+            let [pooled, alone] = [0, 1].map(|k| left.iter().map(|both| both[k]).sum::<f64>());
+            let times = |both: &[f64; 2]| both[0] / both[1];
+            let ((part, _), _) = self.large.iter().zip(&left).max_by(|a, b| times(a.1).total_cmp(&times(b.1)))?;
+            let matters = pooled - alone >= MATTERS * all.at(column, column);
+            let times = (pooled / alone).sqrt();
+            (matters && times >= MUCH && times.is_finite()).then_some(Apart { part: *part, target, times })
+        };
+        all.targets().enumerate().filter_map(of_target).max_by(|a, b| a.times.total_cmp(&b.times))
+    }
 }
 
 /// The recordings that a model contradicts as they are, and does not with two columns exchanged. `answered`: the rows
@@ -274,15 +281,11 @@ struct Moments {
 }
 
 impl Moments {
-    fn none(data: &Dataset) -> Self {
+    fn of(data: &Dataset, rows: &Range<usize>) -> Self {
         let inputs = data.inputs().len();
         let columns = inputs + data.targets().len();
         let forces = (inputs..columns).filter(|k| data.targets()[k - inputs].ends_with(FORCE)).collect();
-        Self { inputs, columns, forces, sums: vec![0.0; columns * columns] }
-    }
-
-    fn of(data: &Dataset, rows: &Range<usize>) -> Self {
-        let mut all = Self::none(data);
+        let mut all = Self { inputs, columns, forces, sums: vec![0.0; columns * columns] };
         let value = |row: usize, k: usize| {
             if k < all.inputs { data.x()[[row, k]] } else { data.y()[[row, k - all.inputs]] }
         };
@@ -297,6 +300,11 @@ impl Moments {
             }
         }
         all
+    }
+
+    /// Of the same columns, and no row.
+    fn nothing(&self) -> Self {
+        Self { sums: vec![0.0; self.sums.len()], ..self.clone() }
     }
 
     fn add(&mut self, other: &Self) {
@@ -314,16 +322,17 @@ impl Moments {
     /// What they were if a difference were put right.
     fn without(&self, difference: Difference, orders: &[Vec<usize>]) -> Self {
         // Each is a sum of two columns at most.
+        let one = |column: usize, by: f64| [(column, by), (column, 0.0)];
         let from = |k: usize| match difference {
-            Difference::Exchanged([a, b]) if k == a => [(b, 1.0), (k, 0.0)],
-            Difference::Exchanged([a, b]) if k == b => [(a, 1.0), (k, 0.0)],
-            Difference::Ordered(order) if k < self.inputs => [(orders[order][k], 1.0), (k, 0.0)],
-            Difference::Scaled { column, by } if k == column => [(k, 1.0 / by), (k, 0.0)],
+            Difference::Exchanged([a, b]) if k == a => one(b, 1.0),
+            Difference::Exchanged([a, b]) if k == b => one(a, 1.0),
+            Difference::Ordered(order) if k < self.inputs => one(orders[order][k], 1.0),
+            Difference::Scaled { column, by } if k == column => one(k, 1.0 / by),
             Difference::Turned { columns: [a, b], by_deg } if k == a || k == b => {
                 let (sin, cos) = by_deg.to_radians().sin_cos();
                 if k == a { [(a, cos), (b, sin)] } else { [(b, cos), (a, -sin)] }
             }
-            _ => [(k, 1.0), (k, 0.0)],
+            _ => one(k, 1.0),
         };
         let place = |k: usize| {
             let both = [from(k / self.columns), from(k % self.columns)];
@@ -462,7 +471,7 @@ mod tests {
 
     fn found(columns: [Array2<f64>; 2]) -> Vec<Mismatch> {
         let (data, parts) = dataset(columns);
-        mismatches(&data, &parts, &[])
+        Parts::of(&data, &parts).map_or_else(Vec::new, |parts| parts.mismatches(&[]))
     }
 
     /// The rows of a part, with a difference made in its columns.
@@ -526,7 +535,7 @@ mod tests {
     fn parts_of_several_persons_are_apart() {
         let of = |columns: [Array2<f64>; 2]| {
             let (data, parts) = dataset(columns);
-            apart(&data, &parts)
+            Parts::of(&data, &parts)?.apart()
         };
         assert_eq!(of(touched(1)), None);
         assert_eq!(of(touched(3)), None);
@@ -545,7 +554,8 @@ mod tests {
         let orders = [vec![1, 0, 2, 3, 4], vec![4, 3, 2, 1, 0]];
         let said = |columns: [Array2<f64>; 2], orders: &[Vec<usize>]| {
             let (data, parts) = dataset(columns);
-            mismatches(&data, &parts, orders).iter().map(|one| (one.part, one.difference)).collect::<Vec<_>>()
+            let all = Parts::of(&data, &parts).unwrap().mismatches(orders);
+            all.iter().map(|one| (one.part, one.difference)).collect::<Vec<_>>()
         };
         let made = Difference::Ordered(1);
         assert_eq!(said(changed(touched(3), 1, made), &orders), [(1, made)]);

@@ -191,12 +191,16 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detection
     }
 }
 
-/// What the network surely sees instead of each outline that a person drew on an upright photograph, where it does.
+/// What the network surely sees instead of each outline that a person drew on an upright photograph, where there is one
+/// and it does.
 ///
 /// # Errors
 /// [`VisionError`] where OpenCV fails.
-pub fn unlike(image: &DynamicImage, outlines: &[&Outline]) -> Result<Vec<Option<Unlike>>, VisionError> {
-    if outlines.is_empty() { Ok(Vec::new()) } else { NailNet::committed()?.unlike(image, outlines) }
+pub fn unlike(image: &DynamicImage, outlines: &[Option<&Outline>]) -> Result<Vec<Option<Unlike>>, VisionError> {
+    match outlines.iter().all(Option::is_none) {
+        true => Ok(vec![None; outlines.len()]),
+        false => NailNet::committed()?.unlike(image, outlines),
+    }
 }
 
 /// By this network.

@@ -33,17 +33,23 @@ const STAYS: f64 = 0.85;
 const LARGE_PX: f64 = 30.0;
 
 impl NailNet {
-    /// What is seen instead of each outline on an upright photograph; `None` where nothing speaks against it.
+    /// What is seen instead of each outline on an upright photograph; `None` where nothing speaks against it, or there
+    /// is none.
     ///
     /// # Errors
     /// [`VisionError`].
-    pub fn unlike(&self, image: &DynamicImage, outlines: &[&Outline]) -> Result<Vec<Option<Unlike>>, VisionError> {
+    pub fn unlike(
+        &self,
+        image: &DynamicImage,
+        outlines: &[Option<&Outline>],
+    ) -> Result<Vec<Option<Unlike>>, VisionError> {
         let rgb = &*colours(image);
         let look = |outline: &Outline| {
             let moments = Moments::of(outline);
             Ok::<_, VisionError>(overlapping(outline, self.look_at(rgb, moments.centroid_px, moments.major_px)?))
         };
-        let one = |outline: &&Outline| {
+        let one = |outline: &Option<&Outline>| {
+            let Some(outline) = outline else { return Ok(None) };
             let Some((iou, seen)) = look(outline)?.filter(|(iou, _)| *iou >= NEAR) else {
                 return Ok((outline.area_px2().sqrt() >= LARGE_PX).then_some(Unlike::Nothing));
             };
