@@ -531,6 +531,21 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     write("late.csv", &|t_s, light, _| format!("{t_s},{light},{}\n", -pressing(t_s - 1.0)));
     judge(&dir, "late.csv", &[]).expect(0).says("9 of 9 contacts are missed and 10 of 10 presses are false");
     judge(&dir, "good.csv", &["late.csv"]).expect(0).says("late.csv: 9 of 9 contacts are missed");
+    // On a clock that is less ahead, and contact switches that stick and that break after 10 s.
+    write("ahead.csv", &|t_s, light, _| format!("{t_s},{light},{}\n", -pressing(t_s + 0.4)));
+    judge(&dir, "ahead.csv", &[])
+        .expect(0)
+        .says("ahead.csv: what the model says comes 0.4")
+        .says("s after contact, and a");
+    for (name, force_n, words) in [
+        ("sticks.csv", -1.0, "sticks.csv: contact lasts from 10.0 to 30.0 s, "),
+        ("breaks.csv", 0.0, "breaks.csv: there is no contact from 9.4 to 30.0 s, and the finger presses 10 times"),
+    ] {
+        let of =
+            |t_s: f64, light: f64, force: f64| format!("{t_s},{light},{}\n", if t_s < 10.0 { force } else { force_n });
+        dir.write(name, altered(30.0, "time_s,P1,Fz_N", of));
+        judge(&dir, name, &[]).expect(0).says(words);
+    }
     // Rows that the model can't answer.
     dir.write("lit.csv", altered(20.0, "time_s,led,P1,Fz_N", |t_s, light, force| format!("{t_s},1,{light},{force}\n")));
     judge(&dir, "lit.csv", &[]).expect(2).says("lit.csv: none of its 2000 rows has a prediction");
@@ -751,6 +766,10 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
     assert_eq!(dir.text("s.jsonl"), fast);
     dir.write("m.toml", "dead_zone_n = 0.1\nclick_m = 3\n");
     mouse(&["--config", "m.toml"]).expect(2).says("m.toml").says("click_m");
+    dir.write("m.toml", "watchdog_s = 0.005\n");
+    mouse(&["--config", "m.toml", "--replace"])
+        .expect(0)
+        .says("watchdog_s = 0.005 lets go of everything between two answers, which are 0.010 s apart");
     dir.train("train.csv", "Fz_N", "z.json", &["-q"]).expect(0);
     let one = ["mouse", "--source", "r.csv", "--model", "z.json", "--events", "z.jsonl"];
     dir.lunula(&one).expect(2).says("the mouse needs Fx_N");

@@ -243,6 +243,10 @@ fn slips_of_names_and_units_are_warned_of() {
     dir.write("trials.csv", table(&[&(1..5).map(counted_on).collect::<Vec<_>>()[..], &of("B", 1.0)].concat()));
     let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
     said.says("each trial of A with pendant took a whole drive longer than the one before");
+    let on = [1, 2, 3].map(|k| ("A", "virtual", k + 3, 1.6 - 0.3 * f64::from(k)));
+    dir.write("trials.csv", table(&[of("A", 1.0), on].concat()));
+    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
+    said.says("the trials of A with virtual begin at 4, where those with another method end: are they counted on?");
     dir.write("trials.csv", by_hand());
     run(&dir, "trials.csv --path-m 1.42 --speed-mps 25 --decisions 27 --out o")
         .expect(0)

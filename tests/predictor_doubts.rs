@@ -15,6 +15,13 @@ fn scale(cell: &mut String, by: f64) {
 }
 
 /// A log with its rows changed, the names left as they are.
+/// Turns Fx and Fy of a log's row.
+fn turn(cells: &mut [String], by_deg: f64) {
+    let (sin, cos) = by_deg.to_radians().sin_cos();
+    let [x, y] = [10, 11].map(|k| cells[k].parse::<f64>().unwrap_or(0.0));
+    (cells[10], cells[11]) = ((cos * x - sin * y).to_string(), (sin * x + cos * y).to_string());
+}
+
 fn write_changed(dir: &Dir, from: &str, to: &str, change: Change<'_>) {
     let text = std::fs::read_to_string(dir.path(from)).expect("a log");
     let (head, rows) = text.split_once('\n').expect("rows");
@@ -168,13 +175,13 @@ fn files_of_other_mountings_persons_and_lights_are_warned_of() {
     for words in ["contradict", "is that another finger", "column `led`"] {
         assert!(!plain.contains(words), "{plain}");
     }
-    let turn = |cells: &mut [String]| {
-        cells.swap(10, 11);
-        scale(&mut cells[10], -1.0);
-    };
-    write_changed(&dir, "b/log.csv", "b.csv", &turn);
+    write_changed(&dir, "b/log.csv", "b.csv", &|cells: &mut [String]| turn(cells, 90.0));
     let turned = train("b.csv");
     assert!(turned.contains("Fx_N and Fy_N look turned by ") && turned.contains("(mounted otherwise?)"), "{turned}");
+    dir.lunula(&["train", "a/log.csv", "--target", "force", "--out", "one.json", "-q"]).expect(0);
+    let beside = |log: &str| dir.lunula(&["evaluate", "one.json", log]).expect(0);
+    beside("b.csv").says("b.csv: Fx_N and Fy_N look turned by ").says("here or where the model was trained");
+    assert!(!beside("b/log.csv").stderr.contains("look"));
     phantom(&dir, ["3", "1", "5"], "touch", "formulae", "c");
     let another = train("c/log.csv");
     assert!(another.contains("times the error in F") && another.contains("is that another finger"), "{another}");
@@ -211,6 +218,9 @@ fn name(k: usize) -> &'static str {
     ["P1", "P2", "P3", "P4", "P5", "P6", "P7", "P8", "Fx_N", "Fy_N", "Fz_N"][k - 2]
 }
 
+/// By how much the measurements turn Fx and Fy.
+const TURNED_DEG: [f64; 5] = [20.0, 30.0, 45.0, 90.0, 180.0];
+
 /// Those that the measurements exchange.
 const EXCHANGED: [(usize, usize); 7] = [(2, 8), (4, 6), (3, 4), (7, 9), (10, 11), (10, 12), (11, 12)];
 
@@ -223,12 +233,13 @@ fn exchanges_beside_models_of_phantom_logs() {
     let logs = phantom_logs(&dir);
     for kind in ["linear", "quadratic"] {
         let (mut agree, mut false_ones, mut made, mut found, mut wrong) = (0, 0, 0, 0, 0);
+        let mut turned = TURNED_DEG.map(|by_deg| (by_deg, 0));
         for (a, sensor, subject) in &logs {
             let log = format!("{a}/log.csv");
             dir.lunula(&["train", &log, "--target", "force", "--model", kind, "--out", "m.json", "-q"]).expect(0);
             let said = |data: &str| {
                 let answer = dir.lunula(&["evaluate", "m.json", data]).expect(0);
-                answer.stderr.lines().find(|line| line.contains("look exchanged")).map(str::to_owned)
+                answer.stderr.lines().find(|line| line.contains("here or where the model was")).map(str::to_owned)
             };
             for (b, ..) in logs.iter().filter(|b| b.0 != *a && b.1 == *sensor) {
                 agree += 1;
@@ -250,9 +261,21 @@ fn exchanges_beside_models_of_phantom_logs() {
                         None => {}
                     }
                 }
+                for (by_deg, found) in &mut turned {
+                    write_changed(&dir, &format!("{b}/log.csv"), "b.csv", &|cells: &mut [String]| turn(cells, *by_deg));
+                    match said("b.csv") {
+                        Some(said) if said.contains("Fx_N and Fy_N look turned") => *found += 1,
+                        Some(said) => {
+                            wrong += 1;
+                            println!("{kind} {a} {b}, turned by {by_deg}: {said}");
+                        }
+                        None => {}
+                    }
+                }
             }
         }
         println!("{kind}: {false_ones} of {agree} that agree; exchanges {found} of {made}, wrong {wrong}");
+        println!("{kind}: turned by degrees {turned:?} of {}", made / EXCHANGED.len());
         assert!(false_ones == 0 && wrong == 0);
     }
 }
@@ -306,15 +329,10 @@ fn mismatches_of_phantom_logs() {
     }
     println!("exchanges and signs {} of {}, gains {} of {}, wrong {wrong}", found[0], made[0], found[1], made[1]);
     assert!(false_ones == 0 && wrong == 0);
-    for by_deg in [20.0_f64, 30.0, 45.0, 90.0, 180.0] {
-        let (sin, cos) = by_deg.to_radians().sin_cos();
+    for by_deg in TURNED_DEG {
         let (mut found, mut all) = (0, 0);
         for ((a, ..), (b, ..)) in pairs().filter(|(a, b)| (a.1, a.2) == (b.1, b.2)) {
-            let turn = |cells: &mut [String]| {
-                let [x, y] = [10, 11].map(|k| cells[k].parse::<f64>().unwrap_or(0.0));
-                (cells[10], cells[11]) = ((cos * x - sin * y).to_string(), (sin * x + cos * y).to_string());
-            };
-            write_changed(&dir, &format!("{b}/log.csv"), "b.csv", &turn);
+            write_changed(&dir, &format!("{b}/log.csv"), "b.csv", &|cells: &mut [String]| turn(cells, by_deg));
             all += 1;
             found +=
                 usize::from(said(&format!("{a}/log.csv"), "b.csv").is_some_and(|said| said.contains("look turned")));

@@ -95,6 +95,18 @@ fn loads_that_never_act_or_suck_are_named() {
     // Beats a minute, and a stiffness in N/mm.
     said("--ph sine:10000+2000@72 --until 2").says("repeats 72 times a second").says("They are @1.200");
     said("--pf1 step:5000@1..9 --set k_C1_N_per_m=100 --until 2").says("times its nominal diameter: is a stiffness");
+    // A logger's table with a hole, in milliseconds, and one that ends while it presses.
+    let table = |name: &str, unit: f64, holds: &dyn Fn(u32) -> bool| {
+        let rows = (0..200).filter(|k| holds(*k)).map(|k| format!("{},{},0\n", f64::from(k) * 0.01 * unit, 20 * k));
+        dir.write(name, format!("time_s,pf1_Pa,pf2_Pa\n{}", rows.collect::<String>()));
+    };
+    table("hole.csv", 1.0, &|k| !(50..120).contains(&k));
+    said("--loads hole.csv --until 2").says("hole.csv: rows come every 0.01 s, and none is between 0.49 and 1.2 s");
+    table("ms.csv", 1000.0, &|_| true);
+    said("--loads ms.csv --until 2").says("ms.csv: rows are 10 s apart, if the stamps are in seconds");
+    table("whole.csv", 1.0, &|_| true);
+    let whole = said("--loads whole.csv --until 3").says("ends at 1.99 s with 3980 and 0 Pa, which press on");
+    assert!(!whole.stderr.contains("rows "), "{}", whole.stderr);
     run(&dir, "--static -500..0/100 --out s.csv --no-figures").expect(0).says("loads begin at -500 Pa: pressing is");
     for fine in [
         "--pf1 step:5000@1..9 --pf2 sine:1000+1000@1",

@@ -27,6 +27,13 @@ const SHEARED_N: f64 = 0.15;
 /// 10.1098/rsif.2012.0467).
 const MUCH_SHEARED_N: f64 = 1.0;
 const HOLDS: f64 = 0.25;
+/// Rows come evenly where so many steps, of so many at least, are within a half of the usual one (assumed).
+const EVEN: f64 = 0.8;
+const EVEN_ROWS: usize = 20;
+/// A gap is longer than so many usual steps, and than so long, seconds (assumed: vessels follow a load within 0.1 to
+/// 0.4 s, 4.3).
+const GAP_STEPS: f64 = 10.0;
+const GAP_S: f64 = 0.2;
 /// Of steps from row to row, so many turn back where an LED is on and off by turns (assumed).
 const BY_TURNS: f64 = 0.95;
 /// So many times the range of all others beyond them is far, and for a row whose neighbours lie among the others
@@ -79,6 +86,29 @@ pub(crate) fn time(time_s: &[f64]) -> Option<String> {
         })
     };
     blocks(time_s).or_else(apart).or_else(near)
+}
+
+/// The usual step of values that grow evenly from row to row.
+pub(crate) fn even_step(values: &[f64]) -> Option<f64> {
+    let steps = || values.windows(2).map(|pair| pair[1] - pair[0]);
+    let usual = median_of(steps()).filter(|usual| *usual > 0.0 && values.len() > EVEN_ROWS)?;
+    let even = steps().filter(|step| (0.5 * usual..=1.5 * usual).contains(step)).count();
+    (even as f64 >= EVEN * (values.len() - 1) as f64).then_some(usual)
+}
+
+/// What to say of a hole in a table of loads whose rows come evenly.
+pub(crate) fn gap(time_s: &[f64]) -> Option<String> {
+    let usual_s = even_step(time_s)?;
+    let longest = time_s.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+    (longest[1] - longest[0] > GAP_S.max(GAP_STEPS * usual_s)).then(|| {
+        format!(
+            "rows come every {} s, and none is between {} and {} s: loads are taken to go straight from the one to the \
+             other; what was pressed there is not known",
+            short(usual_s),
+            short(longest[0]),
+            short(longest[1])
+        )
+    })
 }
 
 /// What to say of rows that share their stamps.

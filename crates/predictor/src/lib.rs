@@ -27,7 +27,7 @@ pub use contact::gate::{Contact, Gate, GateFault, GateState};
 pub use data::dataset::{Dataset, DatasetFault, Recording};
 pub use data::delay::{Delay, delays};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
-pub use data::mismatch::{Apart, Difference, Mismatch, Parts, exchanged};
+pub use data::mismatch::{Apart, Difference, Mismatch, Parts, beside_model};
 pub use data::path::{paths, repeated_paths};
 pub use data::shared::shared;
 pub use evaluate::{

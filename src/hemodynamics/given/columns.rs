@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::hemodynamics::HemodynamicsError;
-use crate::log::{Channel, LitRows, LogReading, without_faults};
-use crate::median::median_of;
+use crate::log::{Channel, LitRows, LogReading, doubts, without_faults};
 use crate::table::{Cell, Table};
 use crate::words::nearest;
 
@@ -14,10 +13,6 @@ pub(in crate::hemodynamics) const PRESSED: [&str; 2] = ["pf1_Pa", "pf2_Pa"];
 /// `P_H` and `P_L`.
 pub(in crate::hemodynamics) const BLOOD: [&str; 2] = ["ph_Pa", "pl_Pa"];
 
-/// A column is like a time where, in so many rows at least, this share of its steps is within a half of the usual one
-/// (assumed).
-const EVEN_ROWS: usize = 20;
-const EVEN: f64 = 0.8;
 /// How many faults of a table are reported.
 const MOST_FAULTS: usize = 10;
 
@@ -135,14 +130,10 @@ impl Rows {
         let mut unused = self.names.iter().filter(|own| !used.contains(&own.as_str()));
         let is_like = |name: &&String| {
             let values = table.values(name).unwrap_or_default();
-            let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-            let Some(usual) = median_of(steps.iter().copied()).filter(|_| steps.len() >= EVEN_ROWS) else {
-                return false;
-            };
-            let even = steps.iter().filter(|step| (0.5 * usual..=1.5 * usual).contains(*step)).count();
+            let Some(usual) = doubts::even_step(&values) else { return false };
             // Rows that are counted are no times.
             let is_count = values.iter().all(|value| value.fract() == 0.0) && usual == 1.0;
-            steps.iter().all(|step| *step > 0.0) && even as f64 >= EVEN * steps.len() as f64 && !is_count
+            values.is_sorted_by(|a, b| a < b) && !is_count
         };
         unused.find(is_like).map(|name| {
             format!(

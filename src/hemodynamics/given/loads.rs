@@ -7,7 +7,7 @@ use lunula_hemodynamics::{Load, LoadFault, Loads, Parameters};
 
 use super::columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
-use crate::log::LogReading;
+use crate::log::{LogReading, doubts};
 
 /// Pressures that are nowhere greater hardly press on vessels of kilopascals, and are in another unit (assumed).
 const HARDLY_PA: f64 = 200.0;
@@ -85,8 +85,12 @@ impl LoadOptions {
             let columns = rows.numbers(&needed, &BLOOD, TIME)?;
             let placed = |what: &[String]| what.iter().map(|one| format!("{}: {one}", path.display())).collect();
             let pressed: Vec<&[f64]> = PRESSED.iter().filter_map(|name| columns.get(name)).collect();
-            let hardly: Vec<String> = hardly_pressed(&pressed).into_iter().collect();
-            warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed), &hardly].concat());
+            let times_s = columns.get(TIME).unwrap_or_default();
+            // Of a table that a person wrote the rows are as far apart as they please.
+            let logged = doubts::even_step(times_s).filter(|_| !rows.is_log());
+            let time = logged.and_then(|_| doubts::time(times_s).or_else(|| doubts::gap(times_s)));
+            let doubted: Vec<String> = hardly_pressed(&pressed).into_iter().chain(time).collect();
+            warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed), &doubted].concat());
             notes = placed(&rows.notes());
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }

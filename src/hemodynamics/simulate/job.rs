@@ -187,6 +187,13 @@ fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &Simul
                 .notes
                 .push(format!("{path}: goes on to {last} s, the run ends at {until_s} s; --until {last} takes it all"));
         }
+        let ends_pa = [&loads.loads.proximal, &loads.loads.distal].map(|load| load.at(last));
+        if last < until_s && ends_pa != [0.0; 2] {
+            report.notes.push(format!(
+                "{path}: ends at {last} s with {} and {} Pa, which press on to the end of the run",
+                ends_pa[0], ends_pa[1]
+            ));
+        }
     }
     for (name, load) in [("pf1", &loads.loads.proximal), ("pf2", &loads.loads.distal)] {
         if least_pa(load, &options.times_s()) < -ROUNDING_PA {

@@ -130,6 +130,7 @@ fn warnings(trials: &Trials, course: &Course) -> Vec<String> {
     let operators = copied(&trials.operators, trials, |row| (row.operator, row.method));
     let methods = copied(&trials.methods, trials, |row| (row.method, row.operator));
     let slips = unlike(trials).into_iter().chain(stopped(trials)).chain(cumulative(trials, course));
+    let slips = slips.chain(counted_on(trials));
     named.chain(long).chain(little).chain(slips).chain(operators).chain(methods).collect()
 }
 
@@ -238,6 +239,25 @@ fn cumulative(trials: &Trials, course: &Course) -> Option<String> {
             names.join(", ")
         )
     })
+}
+
+/// Trials of a method that go on where those of another end: learning would begin in the middle.
+fn counted_on(trials: &Trials) -> Option<String> {
+    let mut counts: BTreeMap<(usize, usize), [u32; 2]> = BTreeMap::new();
+    for row in &trials.rows {
+        let ends = counts.entry((row.operator, row.method)).or_insert([row.trial; 2]);
+        *ends = [ends[0].min(row.trial), ends[1].max(row.trial)];
+    }
+    let ended = |operator: usize, last: u32| counts.iter().any(|((o, _), ends)| *o == operator && ends[1] == last);
+    let goes_on = |((operator, _), ends): &(&(usize, usize), &[u32; 2])| ends[0] > 1 && ended(*operator, ends[0] - 1);
+    let all: Vec<_> = counts.iter().filter(goes_on).collect();
+    let ((operator, method), [first, _]) = all.first()?;
+    let more = if all.len() > 1 { format!(" ({} more alike)", all.len() - 1) } else { String::new() };
+    Some(format!(
+        "the trials of {} with {} begin at {first}, where those with another method end{more}: are they counted on? \
+         Number those of each method from 1, by which they are compared and learning is fitted",
+        trials.operators[*operator], trials.methods[*method]
+    ))
 }
 
 /// What was chosen or could not be known.

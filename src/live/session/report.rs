@@ -212,7 +212,7 @@ impl SessionFigures {
 
     /// Adds what was made of a finger's rows, and ends its recording. Returns what to doubt of it.
     fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) -> Vec<String> {
-        let Decide { samples, answers, rows, .. } = decide;
+        let Decide { samples, answers, rows, span_s, .. } = decide;
         let mut doubts = Vec::new();
         self.rows += rows;
         if let Some(answers) = answers {
@@ -244,6 +244,12 @@ impl SessionFigures {
             };
             failed.extend(nothing.map(|why| format!("no row is answered: {why}")));
             doubts.extend(sensor.doubts());
+            let watchdogs = [
+                answers.switch.as_ref().and_then(SwitchOutput::watchdog_s),
+                answers.pointer.as_ref().map(PointerOutput::watchdog_s),
+            ];
+            let shortest_s = watchdogs.into_iter().flatten().fold(f64::INFINITY, f64::min);
+            doubts.extend(span_s.and_then(|span_s| impatient(shortest_s, span_s, sensor.lit)));
         }
         let Some(mut samples) = samples else { return doubts };
         failed.extend(samples.end_forces().err().map(|why| why.to_string()));
@@ -280,6 +286,17 @@ fn unit(stream: &StreamCertificate) -> Option<String> {
     let arrives = stream.clock.as_ref().is_some_and(|clock| clock.drift_ppm.abs() < SAME_UNIT_PPM);
     let step_s = stream.rate_hz.filter(|_| !arrives && counts.rows >= STEPS)?.recip();
     doubts::time(&[0.0, step_s])
+}
+
+/// That a watchdog lets go between rows, of which so many are answered.
+fn impatient(watchdog_s: f64, [first_s, last_s]: [f64; 2], answered: u64) -> Option<String> {
+    let step_s = (last_s - first_s) / answered.saturating_sub(1) as f64;
+    (answered >= STEPS && watchdog_s < step_s).then(|| {
+        format!(
+            "watchdog_s = {watchdog_s} lets go of everything between two answers, which are {step_s:.3} s apart: \
+             nothing can be pressed; write several times that"
+        )
+    })
 }
 
 /// What has to be known of a session before its rows are used.

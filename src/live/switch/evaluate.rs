@@ -10,10 +10,11 @@ use std::time::Instant;
 use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
 use serde::Serialize;
 
+use super::doubts::elsewhere;
 use super::figures::draw_delays;
 use super::flattery::flattery;
 use super::options::ContactOptions;
-use super::report::{elsewhere, note, of_another_model};
+use super::report::{note, of_another_model};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::Staging;
 use crate::job::{Outputs, Report, Watch};

@@ -1,5 +1,6 @@
 //! The virtual switch (6.1): its thresholds from recordings, and how it does.
 
+mod doubts;
 mod evaluate;
 mod figures;
 mod flattery;

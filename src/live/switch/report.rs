@@ -1,6 +1,6 @@
 //! What the choice of a switch reports, and what any report on a switch says of its recordings.
 
-use lunula_live::switch::{Candidate, Evaluation, Fate, Match, NoiseRate, SwitchConfig, Trace, any_contact};
+use lunula_live::switch::{Candidate, Evaluation, NoiseRate, SwitchConfig};
 use serde::Serialize;
 
 use super::options::ContactOptions;
@@ -86,46 +86,6 @@ pub(super) fn note<F: Serialize>(
     if !inputs.recordings.iter().any(|one| one.path.to_string_lossy().to_lowercase().contains(".xdf")) {
         report.unused(&["stream"], "only recordings of the Lab Streaming Layer have streams");
     }
-}
-
-/// A press that begins so long after its contact began, and after its end, is no press of it, seconds (assumed: blood
-/// follows within 0.4 s, 4.3).
-const LONG_S: f64 = 1.0;
-
-/// Fewer contacts say nothing of that.
-const FEWEST: usize = 3;
-
-/// That what is called contact is not what a switch was pressed by, in all recordings or in some; `names` are theirs,
-/// `found` what became of its presses there.
-pub(super) fn elsewhere(names: &[String], traces: &[Trace], found: &[Vec<Match>]) -> Vec<String> {
-    if let Err(why) = any_contact(traces) {
-        return vec![why.to_string()];
-    }
-    let of = |(name, found): (&String, &Vec<Match>)| Some(format!("{name}: {}", elsewhere_in(found)?));
-    names.iter().zip(found).filter_map(of).collect()
-}
-
-fn elsewhere_in(found: &[Match]) -> Option<String> {
-    let of = |fate| found.iter().filter(move |one| one.fate == fate);
-    let (own, missed) = (of(Fate::True).count(), of(Fate::Missed).count());
-    let contacts = own + missed;
-    if contacts < FEWEST {
-        return None;
-    }
-    let judged = found.len() - missed;
-    let wrong = judged - own;
-    if 2 * missed > contacts && 2 * wrong > judged {
-        return Some(format!(
-            "{missed} of {contacts} contacts are missed and {wrong} of {judged} presses are false: is contact that of \
-             this recording, on its clock, and the right way round?",
-        ));
-    }
-    let behind = |one: &&Match| {
-        one.contact.is_some_and(|contact| one.press_s >= contact.end_s && one.press_s > contact.start_s + LONG_S)
-    };
-    let behind = of(Fate::True).filter(behind).count();
-    (2 * behind > own)
-        .then(|| format!("{behind} of {own} presses begin when their contact is over: is contact the right way round?"))
 }
 
 /// That a switch's thresholds were chosen on the predictions of another model than this.

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use lunula_live::switch::{LONGEST_GAP_S, Trace, compared};
 use lunula_predictor::{Gate, Predictor};
 
+use super::doubts::on_another_clock;
 use super::options::ContactOptions;
 use crate::job::Watch;
 use crate::live::error::LiveError;
@@ -229,5 +230,6 @@ fn read_trace(
             )
         }));
     }
+    said.warnings.extend(on_another_clock(&trace));
     Ok(trace)
 }

@@ -9,10 +9,11 @@ use std::time::Instant;
 
 use lunula_live::switch::{Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
 
+use super::doubts::elsewhere;
 use super::figures::draw_curve;
 use super::flattery::flattery;
 use super::options::TuneOptions;
-use super::report::{CurvePoint, TuneFigures, TuneReport, elsewhere, note};
+use super::report::{CurvePoint, TuneFigures, TuneReport, note};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::{Places, beside};
 use crate::job::{Outputs, Report, Watch};

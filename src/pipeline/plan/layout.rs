@@ -1,11 +1,12 @@
 //! Forwards: from inputs to the tasks of every stage that some wanted result may need.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::fmt::Write as _;
 use std::path::Path;
 
 use super::ids::task_id;
 use super::rows::{Row, stage_rows};
-use super::slips::slips;
+use super::slips::{empty_keys, slips};
 use super::{Layout, Node, NodeInput, NodeSource};
 use crate::job::{Facts, Takes};
 use crate::pipeline::items::{InputItems, Item, Missing, Origin, Relation, World, check_filter, input_items, plain};
@@ -52,7 +53,11 @@ pub(super) fn lay_out<'a>(spec: &Spec, world: &World<'a>) -> Result<Layout<'a>, 
             Err(more) => faults.extend(more),
         }
     }
+    let before = faults.len();
     clashes(spec, &layout, &mut faults);
+    if let (Some(clash), [empty, ..]) = (faults.get_mut(before), &empty_keys(spec, &inputs)[..]) {
+        let _ = write!(clash.what, ". {empty}");
+    }
     if faults.is_empty() {
         nothing_to_do(spec, &layout, &mut faults);
     }

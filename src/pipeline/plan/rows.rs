@@ -63,6 +63,10 @@ pub(super) fn stage_rows(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> 
         }
         for (role, index) in &searched {
             items[*role] = index.find(keys);
+            // Of what is gathered by keys, items that do not say all of them are in no group.
+            if single.is_empty() && keys.0.iter().all(|(key, _)| given[*role].names.contains(key)) {
+                items[*role].retain(|&at| keys.0.iter().all(|(key, _)| given[*role].items[at].keys.get(key).is_some()));
+            }
         }
         if let Some(&role) = optional.iter().find(|&&role| items[role].len() > 1) {
             let places: Vec<&str> = items[role].iter().map(|&at| given[role].items[at].place.as_str()).collect();

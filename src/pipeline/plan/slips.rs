@@ -1,6 +1,6 @@
-//! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, and
-//! files whose names fit a pattern but for the case of letters. And what is done apart for one: values of a table, of a
-//! key that a stage is done for each of, that differ in case and spaces only.
+//! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, or
+//! that lacks it, and files whose names fit a pattern but for the case of letters. And what is done apart for one: values
+//! of a table or of files' names, of a key that a stage is done for each of, that differ in case and spaces only.
 //!
 //! A value is a slip where no `where` asks for it as it is written, and it differs from one that is asked for only in
 //! case and spaces; or by one letter, where no task works on the row. Values that differ in a digit, or in their first
@@ -9,13 +9,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::pipeline::items::InputItems;
-use crate::pipeline::spec::{Filter, From, InputSource, Spec};
+use crate::pipeline::spec::{Filter, From, InputSource, Spec, StageSpec};
 use crate::words::{plain, twins};
 
 /// How many places of one slip are listed.
 const SHOWN: usize = 3;
 /// The shortest value that is taken for another with one letter wrong: words of three letters are too often alike.
 const SHORTEST: usize = 4;
+
+/// Whose a file is.
+const SUBJECT: &str = "subject";
 
 /// The values that are asked for, by table and key.
 type Asked<'a> = BTreeMap<(&'a str, &'a str), BTreeSet<&'a str>>;
@@ -33,16 +36,56 @@ pub(super) fn slips(spec: &Spec, inputs: &[Option<InputItems>], taken: &BTreeSet
             (_, None) => {}
         }
     }
-    let each: BTreeSet<&String> =
-        spec.stages.iter().filter_map(|stage| stage.each.as_ref()).flat_map(|(keys, _)| keys).collect();
+    warnings.extend(empty_keys(spec, inputs));
+    let each = each(spec);
     for ((table, items), key) in tables.iter().flat_map(|of| each.iter().map(move |key| (of, key))) {
-        let values = items.rows.iter().filter_map(|(cells, _)| cells.get(key.as_str()));
+        let values = items.rows.iter().filter_map(|(cells, _)| cells.get(key));
         warnings.extend(twins(&format!("{table}: the values of `{key}`"), values));
+    }
+    for (input, items) in spec.inputs.iter().zip(inputs) {
+        let (InputSource::Files(pattern), Some(items)) = (&input.source, items) else { continue };
+        let found = items.of(None).items;
+        for key in items.columns.iter().filter(|key| each.contains(key.as_str())) {
+            let values = found.iter().filter_map(|item| item.keys.get(key));
+            warnings.extend(twins(&format!("`{pattern}`: the values of `{key}`"), values));
+        }
     }
     for ((table, key), values) in asked(spec) {
         warnings.extend(tables.get(table).into_iter().flat_map(|items| of_table(table, key, &values, items, taken)));
     }
     warnings
+}
+
+/// The keys that stages are done for each of.
+fn each(spec: &Spec) -> BTreeSet<&str> {
+    let of_stage = |stage| match stage {
+        &StageSpec { each: Some((ref keys, _)), .. } => keys.iter().map(String::as_str).collect(),
+        stage => stage.prepared.each().to_vec(),
+    };
+    spec.stages.iter().flat_map(of_stage).collect()
+}
+
+/// Keys that rows of a table leave empty and others of it do not, where they say whose a file is.
+pub(super) fn empty_keys(spec: &Spec, inputs: &[Option<InputItems>]) -> Vec<String> {
+    let mut warnings = BTreeSet::new();
+    let each = each(spec);
+    for (input, items) in spec.inputs.iter().zip(inputs) {
+        let (InputSource::Table(_), Some(items)) = (&input.source, items) else { continue };
+        for relation in (0..input.columns.len()).map(|column| items.of(Some(column))) {
+            for key in relation.names.iter().filter(|key| each.contains(key.as_str()) || *key == SUBJECT) {
+                let without = relation.items.iter().filter(|item| item.keys.get(key).is_none());
+                let without: Vec<&str> = without.map(|item| item.place.as_str()).collect();
+                if !without.is_empty() && without.len() < relation.items.len() {
+                    warnings.insert(format!(
+                        "{}: `{key}` is empty: what is there is in no group of `{key}`, and goes with every one that \
+                         it is joined to; write it",
+                        listed(&without)
+                    ));
+                }
+            }
+        }
+    }
+    warnings.into_iter().collect()
 }
 
 fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Option<String> {

@@ -153,15 +153,9 @@ pub(super) fn clocks(data: &Dataset) -> Option<String> {
     ))
 }
 
-/// What to say of files, as ranges of rows, that contradict the others; `orders` are those of [`TURNED`], of cells.
-pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>], names: &[&str]) -> Vec<String> {
-    let Some(compared) = Parts::of(data, parts) else { return Vec::new() };
-    let all = compared.mismatches(orders);
-    if all.is_empty() {
-        return of_several_persons(data, &compared, names).into_iter().collect();
-    }
-    let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
-    let looks = |difference| match difference {
+/// What a difference looks like; `cells`: whether the columns are those of a picture.
+pub(in crate::predictor) fn looks(difference: Difference, columns: &[&str], cells: bool) -> String {
+    match difference {
         Difference::Exchanged([a, b]) => format!("{} and {} look exchanged", columns[a], columns[b]),
         Difference::Ordered(order) => format!("the picture looks {}", TURNED[order]),
         Difference::Turned { columns: [a, b], by_deg } => {
@@ -170,7 +164,7 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
         Difference::Scaled { column, by } => match by {
             -2.0..-0.5 => {
                 // Of a nail that is alike on both sides it is the same.
-                let mirrored = if orders.is_empty() { "" } else { " (or the picture is mirrored)" };
+                let mirrored = if cells { " (or the picture is mirrored)" } else { "" };
                 format!("{} looks to have the other sign{mirrored}", columns[column])
             }
             _ => {
@@ -179,7 +173,17 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
                 format!("{} looks {} times as large", columns[column], short((by * unit).round() / unit))
             }
         },
-    };
+    }
+}
+
+/// What to say of files, as ranges of rows, that contradict the others; `orders` are those of [`TURNED`], of cells.
+pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>], names: &[&str]) -> Vec<String> {
+    let Some(compared) = Parts::of(data, parts) else { return Vec::new() };
+    let all = compared.mismatches(orders);
+    if all.is_empty() {
+        return of_several_persons(data, &compared, names).into_iter().collect();
+    }
+    let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
     // Of two that contradict each other it isn't known which is right.
     let one_of_two = parts.len() == 2 && all.len() == 2;
     let named = if one_of_two { &all[1..] } else { &all[..] };
@@ -191,7 +195,7 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
         format!(
             "{whose} {}; put right, a linear model of the rest leaves {:.0} % of {others} variance unexplained instead \
              of {:.0} %",
-            looks(one.difference),
+            looks(one.difference, &columns, !orders.is_empty()),
             100.0 * one.mended,
             100.0 * one.recorded
         )

@@ -2,8 +2,10 @@
 //! and what they look like then, or much better with two columns exchanged; and, of answers that nothing was measured
 //! for, voltages that it was not trained on.
 
-use lunula_predictor::{Dataset, Difference, FrictionCone, Mismatch, Predictor, exchanged};
+use lunula_predictor::{Dataset, FrictionCone, Mismatch, Predictor, beside_model};
 use ndarray::{Array2, ArrayView1, ArrayView2};
+
+use crate::predictor::data::looks;
 
 /// The share of rows outside of what was trained on from which it is said (assumed).
 const OUTSIDE: f64 = 0.05;
@@ -44,7 +46,7 @@ pub(in crate::predictor) fn doubts(
         let outside = data.x().outer_iter().filter(|row| predictor.is_outside(&row.to_vec())).count();
         doubts.extend(extrapolated(outside as u64, data.rows() as u64));
     }
-    doubts.extend(in_another_order(predictor, data, seen, values));
+    doubts.extend(on_other_columns(predictor, data, seen, values));
     doubts
 }
 
@@ -66,23 +68,22 @@ pub(in crate::predictor) fn outside_cone(cone: &FrictionCone, forces_n: ArrayVie
     })
 }
 
-/// What to say of recordings whose columns stand in another order than those that a model was trained on.
-fn in_another_order(predictor: &Predictor, data: &Dataset, seen: &Dataset, values: &Array2<f64>) -> Vec<String> {
+/// What to say of recordings whose columns stand in another order than those that a model was trained on, or whose
+/// forces lie along other axes.
+fn on_other_columns(predictor: &Predictor, data: &Dataset, seen: &Dataset, values: &Array2<f64>) -> Vec<String> {
     let answer = |order: &[usize]| Some(predictor.predict(&data.only_inputs(order)).ok()?.1);
-    let columns: Vec<&String> = data.inputs().iter().chain(data.targets()).collect();
+    let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
     let say = |one: Mismatch| {
-        let Difference::Exchanged([a, b]) = one.difference else { return None };
-        Some(format!(
-            "{}: {} and {} look exchanged, here or where the model was trained: with the one for the other it leaves \
-             {:.0} % of the variance unexplained instead of {:.0} %",
+        format!(
+            "{}: {}, here or where the model was trained: put right it leaves {:.0} % of the variance unexplained \
+             instead of {:.0} %",
             seen.recordings()[one.part].name,
-            columns[a],
-            columns[b],
+            looks(one.difference, &columns, false),
             100.0 * one.mended,
             100.0 * one.recorded
-        ))
+        )
     };
-    exchanged(seen, values, data.inputs().len(), answer).into_iter().filter_map(say).collect()
+    beside_model(seen, values, data.inputs().len(), answer).into_iter().map(say).collect()
 }
 
 /// What to say where more than a twentieth of the rows are extrapolated.

@@ -50,11 +50,11 @@ const KINDS: [Kind; 7] = [
 /// Networks are trained from so many starts.
 const RESTARTS: [usize; 2] = [1, 10];
 /// Against the time of a fit.
-pub const FIT: &str = "RMSE on random movement, mean of the forces, N; fits";
+pub const FIT: &str = "RMSE on other recordings, mean of the forces, N; fits";
 /// Against the time of a prediction.
-pub const PREDICT: &str = "RMSE on random movement, mean of the forces, N; predictions of one row";
+pub const PREDICT: &str = "RMSE on other recordings, mean of the forces, N; predictions of one row";
 /// Of linear models of some of the rows.
-pub(super) const ROWS_ERROR: &str = "RMSE on random movement, mean of the forces, N; linear fits of some rows";
+pub(super) const ROWS_ERROR: &str = "RMSE on other recordings, mean of the forces, N; linear fits of some rows";
 /// What the most ill-conditioned problem's error begins with.
 pub(super) const SOLVER_DECIDES: &str = "two photodiodes 2^-20 apart";
 /// One row in so many; of fewer than one in 256, the synthetic recordings have too few for a model.

@@ -9,7 +9,7 @@ use lunula::job::{Given, Said, Watch};
 use lunula::words::fixed;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Label a photodiode log with joint angles: two clocks tied together, with a certificate of how well
 ///
@@ -21,6 +21,11 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// (offset, drift, their errors, residuals, what was left unlabelled), <training>.run.json and pictures of the tie and
 /// of the labels over the photodiodes.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out
+    .value_name("TRAINING.csv")
+    .help("The labelled set: time_s, P1.., forces, <joint>_deg, <joint>_sd_deg, label_status, subject, session, \
+           sensor_status (.csv or .parquet)")
+))]
 pub(crate) struct AlignArgs {
     /// The table of joint angles of `lunula posture`: time_s, clock_s, <joint>_deg, <joint>_sd_deg
     #[arg(long, value_name = "JOINTS.csv")]
@@ -29,10 +34,6 @@ pub(crate) struct AlignArgs {
     /// built in)
     #[arg(long, value_name = "LOG.csv")]
     log: PathBuf,
-    /// The labelled set: time_s, P1.., forces, <joint>_deg, <joint>_sd_deg, label_status, subject, session,
-    /// sensor_status (.csv or .parquet)
-    #[arg(long, value_name = "TRAINING.csv", required_unless_present = "plan")]
-    out: Option<PathBuf>,
     #[command(flatten)]
     given: Given<AlignOptions>,
     /// The angles on the log's clock as an OpenSim motion file as well
@@ -47,11 +48,8 @@ pub(crate) struct AlignArgs {
     /// The table of markers of `lunula posture`, for --dlc
     #[arg(long, value_name = "TRACKS.csv", requires = "dlc")]
     tracks: Option<PathBuf>,
-    /// Draw no pictures
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl AlignArgs {
@@ -70,16 +68,16 @@ impl Command for AlignArgs {
     const NAME: &'static str = "align";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<AlignOutputs> {
         Some(AlignOutputs {
-            training: self.out.clone()?,
+            training: self.results.out.clone()?,
             mot: self.mot.clone(),
             bids: self.bids.clone(),
             dlc: self.dlc.clone(),
-            figures: !self.no_figures,
+            figures: !self.results.no_figures,
             report: true,
         })
     }

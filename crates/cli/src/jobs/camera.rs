@@ -7,7 +7,7 @@ use lunula::camera::{CameraFigures, CameraOptions, CameraReport, Inputs, plan, r
 use lunula::job::{Given, Outputs, Said, Watch};
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Measure a camera's lens from views of a chessboard, for the [camera] of a marker file
 ///
@@ -16,6 +16,7 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// as in its middle. Results: the table [camera], which goes into the marker file as it is, and beside it
 /// <camera>.run.json and a picture of where the corners were seen. Views that do not determine the lens are refused.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out.value_name("CAMERA.toml").help("The lens, as a marker file has it")))]
 pub(crate) struct CameraArgs {
     /// A folder of photographs (png, jpg, tif, bmp), single photographs, or videos
     #[arg(required = true)]
@@ -26,14 +27,8 @@ pub(crate) struct CameraArgs {
     /// plane goes into [camera.plane], and angles seen obliquely are measured right
     #[arg(long, value_name = "FILE")]
     plane: Option<PathBuf>,
-    /// The lens, as a marker file has it
-    #[arg(long, value_name = "CAMERA.toml", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no picture
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl CameraArgs {
@@ -42,7 +37,7 @@ impl CameraArgs {
     }
 
     fn options(&self) -> CameraOptions {
-        CameraOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
+        CameraOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
 }
 
@@ -56,11 +51,11 @@ impl Command for CameraArgs {
     const UNIT: &'static str = "files";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

@@ -8,7 +8,7 @@ use lunula::layout::{LayoutFigures, LayoutInputs, LayoutOptions, LayoutReport, M
 use lunula::predictor::DataFile;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Choose where photodiodes serve best, out of all places of which there are readings (5.5, 7.2)
 ///
@@ -26,14 +26,8 @@ pub(crate) struct LayoutArgs {
     /// Where the photodiodes P1, P2, .. are (toml or json) [default: the thesis' eight]
     #[arg(long, value_name = "FILE")]
     positions: Option<PathBuf>,
-    /// A folder for the results
-    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no pictures
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl LayoutArgs {
@@ -52,11 +46,11 @@ impl Command for LayoutArgs {
     const UNIT: &'static str = "numbers of photodiodes";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

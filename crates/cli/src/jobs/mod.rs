@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::job::{Report, Said, Watch};
+use lunula::job::{Outputs, Report, Said, Watch};
 use lunula::stages::{Fate, Step};
 use lunula::words::shown_lines;
 use serde::Serialize;
@@ -32,6 +32,31 @@ pub(super) struct JobArgs {
     plan: bool,
     #[command(flatten)]
     pub(super) common: Common,
+}
+
+/// What every job takes that has results and draws pictures.
+#[derive(Debug, Args)]
+pub(super) struct ResultArgs {
+    /// A folder for the results
+    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
+    pub(super) out: Option<PathBuf>,
+    /// Draw no pictures
+    #[arg(long)]
+    pub(super) no_figures: bool,
+    #[command(flatten)]
+    pub(super) job: JobArgs,
+}
+
+impl ResultArgs {
+    /// What [`Command::given`] answers; `said` are the options as they were written.
+    pub(super) fn given<'a>(&'a self, said: &'a Said) -> (&'a JobArgs, &'a Said, Option<&'a PathBuf>) {
+        (&self.job, said, self.out.as_ref())
+    }
+
+    /// Where results go; none where it was not said.
+    pub(super) fn outputs(&self) -> Option<Outputs> {
+        Outputs::of(self.out.as_ref(), !self.no_figures)
+    }
 }
 
 /// What a command would do and leave out.

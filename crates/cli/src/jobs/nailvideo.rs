@@ -8,7 +8,7 @@ use lunula::job::{Given, Said, Watch};
 use lunula::nailvideo::{Inputs, NailVideoFigures, NailVideoOptions, NailVideoReport, Outputs, mask_of, plan, run};
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Read virtual photodiodes off a video of a nail: follow the nail, average places of it, find presses
 ///
@@ -18,6 +18,8 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// read it), motion.csv, presses.csv (onset, t50, t90 and tau of each press and release with 95 % intervals; research
 /// use, not a diagnostic), nail.png and nail.json (the outline, to be corrected), report.html, run.json.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out.help("Folder of the results")))]
+#[command(mut_arg("no_figures", |no| no.help("Draw no pictures and write no page")))]
 pub(crate) struct NailVideoArgs {
     /// The video, in any format that FFmpeg reads
     video: PathBuf,
@@ -33,20 +35,14 @@ pub(crate) struct NailVideoArgs {
     positions: Option<PathBuf>,
     #[command(flatten)]
     given: Given<NailVideoOptions>,
-    /// Folder of the results
-    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
-    out: Option<PathBuf>,
     /// Write every normalized frame as well: frames/NNNNNN.png
     #[arg(long)]
     frames: bool,
     /// Tables as Parquet
     #[arg(long)]
     parquet: bool,
-    /// Draw no pictures and write no page
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl NailVideoArgs {
@@ -63,7 +59,7 @@ impl NailVideoArgs {
     }
 
     fn options(&self) -> NailVideoOptions {
-        NailVideoOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
+        NailVideoOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
 }
 
@@ -77,14 +73,14 @@ impl Command for NailVideoArgs {
     const UNIT: &'static str = "frames";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
-            folder: self.out.clone()?,
+            folder: self.results.out.clone()?,
             frames: self.frames,
-            figures: !self.no_figures,
+            figures: !self.results.no_figures,
             report: true,
             ending: if self.parquet { "parquet" } else { "csv" },
         })

@@ -7,7 +7,7 @@ use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::posture::{Layout, Outputs, PostureFigures, PostureOptions, PostureReport, plan, run, suggest};
 
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 use crate::{Common, Outcome, print_line};
 
 /// Measure joint angles in a video of a finger with coloured markers, each frame with its time and standard error
@@ -17,16 +17,18 @@ use crate::{Common, Outcome, print_line};
 /// is not seen is lost, and no angle comes from it. Results: the table of angles, and beside it <joints>.run.json and
 /// pictures of the angles over time and of the last joint against the one before.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out
+    .value_name("JOINTS.csv")
+    .help("Table of the angles: frame, time_s, clock_s, <joint>_deg, <joint>_sd_deg, status; with a [clock] in \
+           the marker file also clock_read_s, clock_sd_s, clock_low_s, clock_high_s (.csv or .parquet)")
+    .required_unless_present("suggest")
+))]
 pub(crate) struct PostureArgs {
     /// The video, in any format that FFmpeg reads
     video: PathBuf,
     /// The marker file
     #[arg(long, value_name = "MARKERS.toml", required_unless_present = "suggest")]
     markers: Option<PathBuf>,
-    /// Table of the angles: frame, time_s, clock_s, <joint>_deg, <joint>_sd_deg, status; with a [clock] in the marker
-    /// file also clock_read_s, clock_sd_s, clock_low_s, clock_high_s (.csv or .parquet)
-    #[arg(long, value_name = "JOINTS.csv", required_unless_present_any = ["suggest", "plan"])]
-    out: Option<PathBuf>,
     /// Table of the markers as well: frame, time_s, marker, x_px, y_px, sd_px, status (.csv or .parquet)
     #[arg(long, value_name = "TRACKS.csv")]
     tracks: Option<PathBuf>,
@@ -35,9 +37,6 @@ pub(crate) struct PostureArgs {
     overlay: Option<PathBuf>,
     #[command(flatten)]
     given: Given<PostureOptions>,
-    /// Draw no pictures
-    #[arg(long)]
-    no_figures: bool,
     /// Print a marker file to start from, guessed from a few frames, and do nothing else
     #[arg(
         long,
@@ -47,7 +46,7 @@ pub(crate) struct PostureArgs {
     )]
     suggest: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 /// `--suggest`, or the job.
@@ -55,7 +54,7 @@ pub(crate) fn run_or_suggest(args: &PostureArgs) -> anyhow::Result<Outcome> {
     if !args.suggest {
         return crate::jobs::run(args);
     }
-    let common = &args.job.common;
+    let common = &args.results.job.common;
     common.start()?;
     let suggested = suggest(&args.video, common.threads())?;
     if common.json {
@@ -75,7 +74,7 @@ impl PostureArgs {
     }
 
     fn options(&self) -> PostureOptions {
-        PostureOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
+        PostureOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
 }
 
@@ -89,15 +88,15 @@ impl Command for PostureArgs {
     const NAME: &'static str = "posture";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
-            joints: self.out.clone()?,
+            joints: self.results.out.clone()?,
             tracks: self.tracks.clone(),
             overlay: self.overlay.clone(),
-            figures: !self.no_figures,
+            figures: !self.results.no_figures,
             report: true,
         })
     }

@@ -9,7 +9,7 @@ use lunula::predictor::trajectory::{
     TrajectoryReport, plan, run as run_trajectory,
 };
 
-use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::jobs::{self, Command, JobArgs, Plan, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Write calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly
@@ -33,18 +33,16 @@ enum KindArg {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out
+    .value_name("TABLE.csv")
+    .help("The table: time_s and Fx_N, Fy_N, Fz_N (of the finger on the surface: pressing is negative Fz_N) or \
+           J2_deg (.csv or .parquet)")
+))]
 struct KindArgs<K: KindOptions> {
     #[command(flatten)]
     given: Given<K>,
-    /// The table: time_s and Fx_N, Fy_N, Fz_N (of the finger on the surface: pressing is negative Fz_N) or J2_deg (.csv
-    /// or .parquet)
-    #[arg(long, value_name = "TABLE.csv", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no pictures
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 pub(crate) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
@@ -63,11 +61,11 @@ impl<K: KindOptions> Command for KindArgs<K> {
     const NAME: &'static str = "trajectory";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

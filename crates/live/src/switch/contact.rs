@@ -103,4 +103,11 @@ impl Contacts {
         let after = self.known.partition_point(|known| known[0] <= time_s);
         after > 0 && time_s <= self.known[after - 1][1]
     }
+
+    /// Whether the finger touches at a time; none where it is not known.
+    #[must_use]
+    pub fn touches(&self, time_s: f64) -> Option<bool> {
+        let begun = self.contacts.partition_point(|one| one.start_s <= time_s);
+        self.knows(time_s).then(|| begun > 0 && time_s < self.contacts[begun - 1].end_s)
+    }
 }

@@ -244,6 +244,29 @@ fn false_switches_of_a_gaussian_error_are_as_many_as_rices_formula_says() {
 }
 
 /// Contacts of 0.4 s every 5 s; the value follows 0.1 s late to 1 N, with noise of 0.05 N.
+#[test]
+fn how_far_values_follow_contact_is_found() {
+    let late_by = |late_s: f64| {
+        let plain = trace(1, 60.0);
+        let mut late = Trace { contacts: Contacts::default(), ..plain.clone() };
+        for (k, t_s) in plain.time_s.iter().enumerate() {
+            late.contacts.push(*t_s, plain.contacts.touches(t_s + late_s), k == 0);
+        }
+        Lag::of(&late).map(|lag| lag.by_s)
+    };
+    let by_s = late_by(0.0).unwrap();
+    assert!((0.0..=0.12).contains(&by_s), "a low-pass of 0.1 s: {by_s}");
+    for late_s in [0.3, 0.5, -0.3] {
+        let shifted = late_by(late_s).unwrap();
+        assert!((shifted - by_s - late_s).abs() < 0.05, "{shifted} of {late_s}");
+    }
+    let few = Trace { begins: vec![0], ..trace(1, 20.0) };
+    assert_eq!(Lag::of(&few), None);
+    let plain = trace(1, 60.0);
+    let noise = (0..plain.value.len()).map(|k| (k * 7919 % 101) as f64).collect();
+    assert_eq!(Lag::of(&Trace { value: noise, ..plain }), None);
+}
+
 fn trace(seed: u64, seconds: f64) -> Trace {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut trace = Trace { begins: vec![0], ..Trace::default() };

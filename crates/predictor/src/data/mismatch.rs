@@ -4,7 +4,8 @@
 //! In: a [`Dataset`] and its parts. Out: of each part the one column, or the two, that look exchanged, scaled or turned
 //! in sign beside the other parts, or two forces that look measured along other axes ([`Parts::mismatches`]); and
 //! whether one model of all parts is much worse than one of each ([`Parts::apart`]). In: recordings, and what a model
-//! makes of them with their inputs in any order. Out: which two look exchanged ([`exchanged`]).
+//! makes of them with their inputs in any order. Out: which two columns look exchanged, or which two forces turned
+//! ([`beside_model`]).
 //!
 //! A linear model (equations 10 to 13) of the other parts is tried on the part as it is and with each pair of columns
 //! exchanged, each column scaled, and the same the other way round. Only what explains both is said. Of 182 pairs of
@@ -17,7 +18,7 @@
 
 use std::ops::Range;
 
-use ndarray::{Array2, Axis, Slice};
+use ndarray::{Array1, Array2, Axis, Slice};
 
 use crate::algebra::cholesky::Cholesky;
 use crate::{Dataset, Recording};
@@ -168,11 +169,11 @@ impl Parts {
     }
 }
 
-/// The recordings that a model contradicts as they are, and does not with two columns exchanged. `answered`: the rows
-/// that were answered by `values`, as they are; `answer`: the same rows with the inputs in another order. Offsets
-/// do not count.
+/// The recordings that a model contradicts as they are, and does not with two columns exchanged, or two forces turned.
+/// `answered`: the rows that were answered by `values`, as they are; `answer`: the same rows with the inputs in another
+/// order. Offsets do not count.
 #[must_use]
-pub fn exchanged(
+pub fn beside_model(
     answered: &Dataset,
     values: &Array2<f64>,
     inputs: usize,
@@ -221,6 +222,18 @@ pub fn exchanged(
     for pair in pairs(0..targets) {
         look(pair.map(|k| inputs + k), values, &in_order(targets, pair));
     }
+    for pair in pairs_of(&forces(answered.targets())) {
+        for ((_, one, recorded), tried) in doubted.iter().zip(&mut tried) {
+            let [[a, of_a], [b, of_b]] = pair.map(|k| both(one, values, [k, k]).map(centred));
+            let (sin, cos) = (of_a.dot(&b) - of_b.dot(&a), of_a.dot(&a) + of_b.dot(&b));
+            let by = sin.atan2(cos);
+            let difference = Difference::Turned { columns: pair.map(|k| inputs + k), by_deg: by.to_degrees() };
+            let left = |measured: &Array1<f64>, values: &Array1<f64>| (measured - values).var(0.0) / measured.var(0.0);
+            let back = [&a * by.cos() + &b * by.sin(), &b * by.cos() - &a * by.sin()];
+            let gain = left(&back[0], &of_a) - left(&a, &of_a) + left(&back[1], &of_b) - left(&b, &of_b);
+            tried.push((difference, recorded + gain / targets as f64));
+        }
+    }
     // A force of another sign, which answers with two photodiodes exchanged are like, is no exchange.
     let with_sign = |one: &Recording, k: usize| {
         let [measured, values] = both(one, values, [k, k]);
@@ -229,7 +242,8 @@ pub fn exchanged(
     let found = doubted.into_iter().zip(tried).filter_map(|((part, one, recorded), tried)| {
         let (difference, mended) = best(tried, recorded)?;
         let is_sign = (0..targets).any(|k| mended > recorded + with_sign(one, k) / targets as f64);
-        (recorded - mended >= LESS && !is_sign).then_some(Mismatch { part, difference, recorded, mended })
+        let matters = recorded - mended >= LESS && is_other(difference);
+        (matters && !is_sign).then_some(Mismatch { part, difference, recorded, mended })
     });
     found.collect()
 }
@@ -238,6 +252,21 @@ pub fn exchanged(
 fn pairs(columns: Range<usize>) -> impl Iterator<Item = [usize; 2]> {
     let end = columns.end;
     columns.flat_map(move |a| (a + 1..end).map(move |b| [a, b]))
+}
+
+/// Every two of some places.
+fn pairs_of(places: &[usize]) -> impl Iterator<Item = [usize; 2]> {
+    pairs(0..places.len()).map(|pair| pair.map(|k| places[k]))
+}
+
+/// Which targets are forces.
+fn forces(targets: &[String]) -> Vec<usize> {
+    (0..targets.len()).filter(|k| targets[*k].ends_with(FORCE)).collect()
+}
+
+fn centred(values: Array1<f64>) -> Array1<f64> {
+    let mean = values.mean().unwrap_or_default();
+    values - mean
 }
 
 /// Of differences and what is left unexplained with each put right, the one that is clearly best and surely needed.
@@ -264,6 +293,15 @@ fn is_turn(by_deg: f64) -> bool {
     (TURN_DEG..360.0 - TURN_DEG).contains(&by_deg.rem_euclid(360.0))
 }
 
+/// Whether a difference is more than mounting again makes.
+fn is_other(difference: Difference) -> bool {
+    match difference {
+        Difference::Scaled { by, .. } => !is_gain(by),
+        Difference::Turned { by_deg, .. } => is_turn(by_deg),
+        Difference::Exchanged(_) | Difference::Ordered(_) => true,
+    }
+}
+
 /// Whether a sensor that was put on again may differ so much.
 fn is_gain(by: f64) -> bool {
     (1.0 / GAIN..GAIN).contains(&by)
@@ -284,7 +322,7 @@ impl Moments {
     fn of(data: &Dataset, rows: &Range<usize>) -> Self {
         let inputs = data.inputs().len();
         let columns = inputs + data.targets().len();
-        let forces = (inputs..columns).filter(|k| data.targets()[k - inputs].ends_with(FORCE)).collect();
+        let forces = forces(data.targets()).into_iter().map(|k| inputs + k).collect();
         let mut all = Self { inputs, columns, forces, sums: vec![0.0; columns * columns] };
         let value = |row: usize, k: usize| {
             if k < all.inputs { data.x()[[row, k]] } else { data.y()[[row, k - all.inputs]] }
@@ -415,18 +453,11 @@ fn explained(of: &Moments, on: &Moments, orders: &[Vec<usize>]) -> Option<(Diffe
     let exchanged = pairs(each).chain(pairs(on.targets())).map(Difference::Exchanged);
     let ordered = (0..orders.len()).map(Difference::Ordered);
     // A picture that is turned is like forces that are.
-    let forces = on.forces.iter().enumerate().filter(|_| orders.is_empty());
-    let turned = forces.flat_map(|(k, &a)| on.forces[k + 1..].iter().map(move |&b| [a, b]));
-    let turned = turned.map(|columns| on.turn(&model, columns));
+    let turned = pairs_of(&on.forces).filter(|_| orders.is_empty()).map(|columns| on.turn(&model, columns));
     let put_right = |difference: Difference| (difference, on.without(difference, orders).unexplained(&model));
     let all = exchanged.chain(scaled).chain(ordered).chain(turned);
     let (difference, mended) = best(all.map(put_right).collect(), recorded)?;
-    let is_other = match difference {
-        Difference::Scaled { by, .. } => !is_gain(by),
-        Difference::Turned { by_deg, .. } => is_turn(by_deg),
-        Difference::Exchanged(_) | Difference::Ordered(_) => true,
-    };
-    is_other.then_some((difference, recorded, mended))
+    is_other(difference).then_some((difference, recorded, mended))
 }
 
 #[cfg(test)]
@@ -568,7 +599,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_in_another_order_than_the_models_is_found() {
+    fn a_recording_in_another_order_or_on_other_axes_than_the_models_is_found() {
         // The model is of other days: their offsets and gains differ.
         let (trained, _) = dataset(touched(1));
         let model = Moments::of(&trained, &(0..EACH)).model().unwrap();
@@ -576,7 +607,7 @@ mod tests {
         let said = |columns: [Array2<f64>; 2]| {
             let (data, _) = dataset(columns);
             let answer = |order: &[usize]| Some(data.only_inputs(order).x().dot(&weights));
-            exchanged(&data, &data.x().dot(&weights), 5, answer)
+            beside_model(&data, &data.x().dot(&weights), 5, answer)
         };
         assert_eq!(said(touched(3)), []);
         for pair in [[0, 1], [2, 4], [5, 7], [6, 7]] {
@@ -585,6 +616,17 @@ mod tests {
             assert_eq!(difference, Difference::Exchanged(pair));
             assert!(mended < 0.1 && recorded > 2.0 * mended, "{all:?}");
         }
+        for by_deg in [30.0, -90.0, 180.0] {
+            let made = Difference::Turned { columns: [5, 6], by_deg };
+            let all = said(changed(touched(3), 1, made));
+            let [Mismatch { part: 1, difference: Difference::Turned { columns, by_deg: found }, .. }] = all[..] else {
+                panic!("{made:?}: {all:?}")
+            };
+            assert_eq!(columns, [5, 6]);
+            assert!(((found - by_deg + 180.0).rem_euclid(360.0) - 180.0).abs() < 5.0, "{found} for {by_deg}");
+        }
+        let little = Difference::Turned { columns: [5, 6], by_deg: 8.0 };
+        assert_eq!(said(changed(touched(3), 1, little)), [], "a transducer that was mounted again");
         assert_eq!(said(changed(touched(3), 1, Difference::Scaled { column: 2, by: 2.0 })), [], "no exchange");
         let negated = changed(touched(3), 1, Difference::Scaled { column: 5, by: -1.0 });
         assert_eq!(said(negated), [], "a force, no exchange");

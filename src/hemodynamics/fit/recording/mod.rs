@@ -188,7 +188,9 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     let mut warnings = rows.warnings().to_vec();
     warnings.extend(unknown.into_iter().chain(of_photodiodes));
     let used: Vec<&str> = needed.iter().copied().chain(photodiodes.iter().map(|one| one.name.as_str())).collect();
-    warnings.extend(times_s.as_deref().and_then(doubts::time).filter(|_| !rows.is_log()));
+    if let Some(times_s) = times_s.as_deref().filter(|_| !rows.is_log()) {
+        warnings.extend(doubts::time(times_s).into_iter().chain(doubts::gap(times_s)));
+    }
     warnings.extend(match &force {
         Some(force) => signs::of_force(force.name, read.get(force.name).unwrap_or_default(), rows.is_log()),
         None => signs::of_pressures(PRESSED.map(|name| (name, read.get(name).unwrap_or_default()))),

@@ -88,6 +88,11 @@ impl PointerOutput {
         self.counts
     }
 
+    /// After how long without a valid sample everything is let go, seconds.
+    pub(crate) fn watchdog_s(&self) -> f64 {
+        self.pointer.config().watchdog_s
+    }
+
     /// When its watchdog lets go.
     pub(crate) fn due_s(&self) -> Option<f64> {
         self.pointer.due_s()

@@ -70,6 +70,11 @@ impl SwitchOutput {
         self.switch.is_pressed()
     }
 
+    /// After how long without a valid sample it lets go, seconds; none where it waits for ever.
+    pub(crate) fn watchdog_s(&self) -> Option<f64> {
+        Some(self.switch.config().watchdog_s).filter(|watchdog_s| *watchdog_s > 0.0)
+    }
+
     /// When its watchdog lets go.
     pub(crate) fn due_s(&self) -> Option<f64> {
         self.switch.due_s()

@@ -8,7 +8,7 @@ use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::words::fixed;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 const EXAMPLES: &str = "Examples:
 Stiffness and damping of all walls, and the photodiodes:
@@ -44,6 +44,10 @@ k_C1_N_per_m work too.";
 /// <out>.run.json.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
+#[command(mut_arg("out", |out| out
+    .value_name("FIT.json")
+    .help("The result; parameters, tables and picture go beside it, named after it")
+))]
 pub(crate) struct FitArgs {
     /// Recorded responses
     #[arg(required = true, value_name = "RECORDING")]
@@ -58,14 +62,8 @@ pub(crate) struct FitArgs {
     /// thesis' table]; `lunula simulate --print-params` writes a whole file to start from
     #[arg(long, value_name = "PARAMS.toml")]
     params: Option<PathBuf>,
-    /// The result; parameters, tables and picture go beside it, named after it
-    #[arg(long, value_name = "FIT.json", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no picture
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl FitArgs {
@@ -87,11 +85,11 @@ impl Command for FitArgs {
     const NAME: &'static str = "fit";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

@@ -11,7 +11,7 @@ use lunula::hemodynamics::{
 };
 use lunula::job::{Given, Outputs, Said, Watch};
 
-use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::jobs::{self, Command, JobArgs, Plan, ResultArgs};
 use crate::{Common, Outcome, print_line};
 
 const EXAMPLES: &str = "Examples:
@@ -45,6 +45,11 @@ Exit status: 0 all done; 1 a vessel closed and --keep-partial wrote the rows bef
 /// model: the error names it and when.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
+#[command(mut_arg("out", |out| out
+    .value_name("TABLE.csv")
+    .help("The table (.csv or .parquet)")
+    .required_unless_present("print_params")
+))]
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
     way: Way,
@@ -59,14 +64,8 @@ pub(crate) struct SimulateArgs {
     /// Print all parameters as a file for --params, and do nothing else
     #[arg(long)]
     print_params: bool,
-    /// The table (.csv or .parquet)
-    #[arg(long, value_name = "TABLE.csv", required_unless_present_any = ["plan", "print_params"])]
-    out: Option<PathBuf>,
-    /// Draw no picture
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 /// The two jobs of the command, and the options of the one that --static chooses.
@@ -146,11 +145,11 @@ impl Command for OverTime<'_> {
     const NAME: &'static str = "simulate";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.args.job, &self.given.said, self.args.out.as_ref())
+        self.args.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.args.out.as_ref(), !self.args.no_figures)
+        self.args.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
@@ -186,11 +185,11 @@ impl Command for Static<'_> {
     const NAME: &'static str = "simulate --static";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.args.job, &self.given.said, self.args.out.as_ref())
+        self.args.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.args.out.as_ref(), !self.args.no_figures)
+        self.args.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

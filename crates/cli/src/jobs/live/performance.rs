@@ -9,7 +9,7 @@ use lunula::live::performance::{
 };
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 const EXAMPLES: &str = "Examples:
 The thesis' course (appendix C): 1.42 m at 25 mm/s, 27 moves:
@@ -37,14 +37,8 @@ pub(crate) struct PerformanceArgs {
     trials: PathBuf,
     #[command(flatten)]
     given: Given<PerformanceOptions>,
-    /// A folder for the results
-    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no pictures
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl Command for PerformanceArgs {
@@ -55,11 +49,11 @@ impl Command for PerformanceArgs {
     const NAME: &'static str = "performance";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

@@ -9,7 +9,7 @@ use lunula::live::skill::{FingerSpread, SkillFigures, SkillInputs, SkillOptions,
 use lunula::predictor::DataFile;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 const EXAMPLES: &str = "Examples:
 Trials of one person, a recording each, the first of them the reference:
@@ -44,14 +44,8 @@ pub(crate) struct SkillArgs {
     reference: Option<PathBuf>,
     #[command(flatten)]
     given: Given<SkillOptions>,
-    /// A folder for the results
-    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no pictures
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl SkillArgs {
@@ -79,11 +73,11 @@ impl Command for SkillArgs {
     const UNIT: &'static str = "recordings";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

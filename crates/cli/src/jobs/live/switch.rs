@@ -10,7 +10,7 @@ use lunula::live::{
 };
 use lunula::predictor::DataFile;
 
-use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::jobs::{self, Command, JobArgs, Plan, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Choose and judge the thresholds of the virtual switch (6.1), for `lunula live --switch`
@@ -33,6 +33,7 @@ enum What {
 /// not trained on, with hours of rest and of other work among them: what was not recorded is not known. Results:
 /// switch.toml, beside it <switch>.run.json and the curve of delay against false switches.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out.value_name("SWITCH.toml").help("The switch")))]
 struct TuneArgs {
     /// Recordings: tables or logs with photodiodes and what is true of contact
     #[arg(required = true, value_name = "RECORDING")]
@@ -42,20 +43,15 @@ struct TuneArgs {
     models: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<TuneOptions>,
-    /// The switch
-    #[arg(long, value_name = "SWITCH.toml", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no picture
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 /// Judge a switch on recordings: false switches an hour with their interval, misses, delays
 ///
 /// Results: switch.json, presses.csv (presses that are judged and contacts that were missed), delays.png and .svg.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out.value_name("FOLDER").help("The folder of results")))]
 struct EvaluateArgs {
     /// The switch
     #[arg(value_name = "SWITCH.toml")]
@@ -68,14 +64,8 @@ struct EvaluateArgs {
     models: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<ContactOptions>,
-    /// The folder of results
-    #[arg(long, value_name = "FOLDER", required_unless_present = "plan")]
-    out: Option<PathBuf>,
-    /// Draw no picture
-    #[arg(long)]
-    no_figures: bool,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 pub(crate) fn run(args: &SwitchArgs) -> anyhow::Result<Outcome> {
@@ -95,11 +85,11 @@ impl Command for TuneArgs {
     const UNIT: &'static str = "recordings";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
@@ -134,11 +124,11 @@ impl Command for EvaluateArgs {
     const UNIT: &'static str = "recordings";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+        self.results.outputs()
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::Resettable;
 use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::predictor::{AnalyseFigures, AnalyseJob, AnalyseReport, ModelMode, analyse, analyse_plan};
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Show which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
@@ -15,17 +16,18 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// its training rows. Singular values of like size mean that the targets can be predicted independently. --json also
 /// gives the model as the thesis prints it (equation 9 or 16, with F_0).
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out
+    .help("A folder for modes.csv, the picture and run.json")
+    .required_unless_present(Resettable::Reset)
+))]
 pub(crate) struct AnalyseArgs {
     /// A model file of `lunula train`
     #[arg(value_name = "MODEL.json")]
     model: PathBuf,
-    /// A folder for modes.csv, the picture and run.json
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
     #[command(flatten)]
     given: Given<AnalyseJob>,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl Command for AnalyseArgs {
@@ -36,11 +38,11 @@ impl Command for AnalyseArgs {
     const NAME: &'static str = "analyse";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Self::Outputs> {
-        Some(Outputs::of(self.out.as_ref(), true))
+        Some(self.results.outputs())
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::Resettable;
 use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::predictor::{
     DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, Splits, evaluate, evaluate_plan, way,
@@ -10,7 +11,7 @@ use lunula::predictor::{
 
 use crate::Common;
 use crate::jobs::predictor::{figure, say_merit};
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Measure how far off a model is on recordings, and how far off its recipe is on recordings held out
 ///
@@ -21,6 +22,10 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// --splits sets all ways beside each other. --out
 /// draws predicted against measured over time and as scatter (Fig. 94 to 104).
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out
+    .help("A folder for merit.csv, predicted.csv, pictures and run.json")
+    .required_unless_present(Resettable::Reset)
+))]
 pub(crate) struct EvaluateArgs {
     /// A model file of `lunula train`
     #[arg(value_name = "MODEL.json")]
@@ -30,11 +35,8 @@ pub(crate) struct EvaluateArgs {
     data: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<EvaluateChoices>,
-    /// A folder for merit.csv, predicted.csv, pictures and run.json
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl Command for EvaluateArgs {
@@ -45,11 +47,11 @@ impl Command for EvaluateArgs {
     const NAME: &'static str = "evaluate";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Self::Outputs> {
-        Some(Outputs::of(self.out.as_ref(), true))
+        Some(self.results.outputs())
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

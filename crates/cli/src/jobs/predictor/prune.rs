@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::Resettable;
 use lunula::job::{Given, Outputs, Said, Watch};
 use lunula::predictor::{DataFile, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 
 use crate::Common;
 use crate::jobs::predictor::figure;
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 
 /// Compare the linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
@@ -16,6 +17,10 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// number, and what the removal of each one costs. Subsets are compared by the mean over targets of RMSE over the
 /// target's spread.
 #[derive(Debug, Args)]
+#[command(mut_arg("out", |out| out
+    .help("A folder for subsets.csv, pictures and run.json")
+    .required_unless_present(Resettable::Reset)
+))]
 pub(crate) struct PruneArgs {
     /// Recordings to train on
     #[arg(required = true, value_name = "DATA")]
@@ -25,11 +30,8 @@ pub(crate) struct PruneArgs {
     validate: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<PruneChoices>,
-    /// A folder for subsets.csv, pictures and run.json
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
     #[command(flatten)]
-    job: JobArgs,
+    results: ResultArgs,
 }
 
 impl Command for PruneArgs {
@@ -40,11 +42,11 @@ impl Command for PruneArgs {
     const NAME: &'static str = "prune";
 
     fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        (&self.job, &self.given.said, self.out.as_ref())
+        self.results.given(&self.given.said)
     }
 
     fn outputs(&self) -> Option<Self::Outputs> {
-        Some(Outputs::of(self.out.as_ref(), true))
+        Some(self.results.outputs())
     }
 
     fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {

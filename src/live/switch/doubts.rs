@@ -1,0 +1,115 @@
+//! What makes it doubtful that a recording's contact is what the finger did: it is the other way round, of another
+//! recording, on another clock, or its switch sticks.
+
+use lunula_live::switch::{Contact, Fate, Lag, Match, Trace, any_contact};
+
+use crate::median::median_of;
+
+/// By how much values follow contact at most, and come before it, seconds, and how much likeness a shift has to win
+/// (assumed: `Lag` says what phantoms give; blood takes 0.1 to 0.3 s, 4.3).
+const LATE_S: f64 = 0.3;
+const EARLY_S: f64 = 0.1;
+const GAIN: f64 = 0.02;
+
+/// That the model's values follow contact later than blood does, or come before it.
+pub(super) fn on_another_clock(trace: &Trace) -> Option<String> {
+    let Lag { by_s, shifted, recorded } = Lag::of(trace)?;
+    let [side, than] = match by_s {
+        late if late > LATE_S + 1e-9 => ["after", "a nail takes 0.1 to 0.3 s"],
+        early if early < -EARLY_S - 1e-9 => ["before", "no finger does"],
+        _ => return None,
+    };
+    (shifted - recorded >= GAIN).then(|| {
+        format!(
+            "what the model says comes {:.2} s {side} contact, and {than}: was contact logged on another clock? Delays \
+             hold the difference (correlation {recorded:.2}, shifted so {shifted:.2})",
+            by_s.abs()
+        )
+    })
+}
+
+/// A press that begins so long after its contact began, and after its end, is no press of it, seconds (assumed: blood
+/// follows within 0.4 s, 4.3).
+const LONG_S: f64 = 1.0;
+
+/// Fewer contacts say nothing of that.
+const FEWEST: usize = 3;
+
+/// That what is called contact is not what a switch was pressed by, in all recordings or in some; `names` are theirs,
+/// `found` what became of its presses there.
+pub(super) fn elsewhere(names: &[String], traces: &[Trace], found: &[Vec<Match>]) -> Vec<String> {
+    if let Err(why) = any_contact(traces) {
+        return vec![why.to_string()];
+    }
+    let of = |((name, trace), found): ((&String, &Trace), &Vec<Match>)| {
+        let what = elsewhere_in(found).or_else(|| closed(trace, found)).or_else(|| open(trace, found))?;
+        Some(format!("{name}: {what}"))
+    };
+    names.iter().zip(traces).zip(found).filter_map(of).collect()
+}
+
+fn elsewhere_in(found: &[Match]) -> Option<String> {
+    let of = |fate| found.iter().filter(move |one| one.fate == fate);
+    let (own, missed) = (of(Fate::True).count(), of(Fate::Missed).count());
+    let contacts = own + missed;
+    if contacts < FEWEST {
+        return None;
+    }
+    let judged = found.len() - missed;
+    let wrong = judged - own;
+    if 2 * missed > contacts && 2 * wrong > judged {
+        return Some(format!(
+            "{missed} of {contacts} contacts are missed and {wrong} of {judged} presses are false: is contact that of \
+             this recording, on its clock, and the right way round?",
+        ));
+    }
+    let behind = |one: &&Match| {
+        one.contact.is_some_and(|contact| one.press_s >= contact.end_s && one.press_s > contact.start_s + LONG_S)
+    };
+    let behind = of(Fate::True).filter(behind).count();
+    (2 * behind > own)
+        .then(|| format!("{behind} of {own} presses begin when their contact is over: is contact the right way round?"))
+}
+
+/// So many presses within a contact, or without any, ...
+const PRESSES: usize = 5;
+/// ... in so many times as long as contacts usually are, are those of a contact that does not follow the finger.
+const LONG: f64 = 10.0;
+
+/// That a contact lasts on while the finger presses again and again.
+fn closed(trace: &Trace, found: &[Match]) -> Option<String> {
+    let length_s = |one: &Contact| one.end_s - one.start_s;
+    let contacts = trace.contacts.contacts();
+    let usual_s = median_of(contacts.iter().map(length_s)).filter(|_| contacts.len() >= FEWEST)?;
+    let longest = contacts.iter().max_by(|a, b| length_s(a).total_cmp(&length_s(b)))?;
+    let again = found.iter().filter(|one| one.fate == Fate::Repeated && one.contact == Some(*longest)).count();
+    (again >= PRESSES && length_s(longest) >= LONG * usual_s).then(|| {
+        format!(
+            "contact lasts from {:.1} to {:.1} s, {usual_s:.1} s in the median, and the finger presses {} times within: \
+             does the contact switch stick? Leave contact empty there",
+            longest.start_s,
+            longest.end_s,
+            again + 1
+        )
+    })
+}
+
+/// That there is none for long while the finger presses as often as where there is.
+fn open(trace: &Trace, found: &[Match]) -> Option<String> {
+    let contacts = trace.contacts.contacts();
+    let (first, last) = (contacts.first()?, contacts.last()?);
+    let ends = [*trace.time_s.first()?, *trace.time_s.last()?];
+    let touched_s = last.end_s - first.start_s;
+    let without = [[ends[0], first.start_s], [last.end_s, ends[1]]];
+    let [from_s, to_s] = without.into_iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+    let is_within = |one: &&Match| one.fate == Fate::False && (from_s..=to_s).contains(&one.press_s);
+    let presses = found.iter().filter(is_within).count();
+    // Half as often.
+    let is_as_often = 2.0 * presses as f64 * touched_s >= contacts.len() as f64 * (to_s - from_s);
+    (contacts.len() >= FEWEST && presses >= PRESSES && is_as_often).then(|| {
+        format!(
+            "there is no contact from {from_s:.1} to {to_s:.1} s, and the finger presses {presses} times there: did the \
+             contact switch work? Leave contact empty there"
+        )
+    })
+}
