@@ -4,6 +4,7 @@
 //! they are there. Out: a [`Posture`]. `status` is held against the angles; other columns (`frame`) are not needed. A
 //! table of one frame is a table; one of none is refused.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::flexion;
@@ -114,6 +115,8 @@ impl Posture {
             table.each_text("status", |row, status| lost[row] = status.starts_with("lost"))?;
             warnings.extend(empty_lost(&mut angles_deg, &lost));
         }
+        let columns = joints.iter().zip(angles_deg.iter().zip(&sds_deg));
+        warnings.extend(columns.filter_map(|(joint, (angles, sds))| filled_in(joint, angles, sds)));
         let angles: Vec<&[f64]> = angles_deg.iter().map(Vec::as_slice).collect();
         warnings.extend(flexion::doubts(&joints, &angles));
         warnings.iter_mut().for_each(|warning| *warning = format!("{}: {warning}", path.display()));
@@ -149,6 +152,50 @@ fn empty_lost(angles_deg: &mut [Vec<f64>], lost: &[bool]) -> Option<String> {
         filled.len(),
         first + 1
     ))
+}
+
+/// So many frames of one angle to the last digit were not measured, where few others repeat the one before.
+const HELD: usize = 10;
+const FEW: f64 = 0.1;
+/// An angle to the last digit that stands so often between frames on its other side stands for none: it is so far from
+/// both, degrees and standard errors (assumed: a finger turns back by less within a frame).
+const OFTEN: usize = 3;
+const FAR_DEG: f64 = 5.0;
+const FAR_SDS: f64 = 10.0;
+
+/// What to say of frames whose angle of a joint stands for none, or was held. Angles whose standard error is 0, or
+/// not known, are not measured.
+fn filled_in(joint: &str, angles_deg: &[f64], sds_deg: &[f64]) -> Option<String> {
+    let is_measured = |row: &usize| angles_deg[*row].is_finite() && sds_deg[*row] > 0.0;
+    let known: Vec<usize> = (0..angles_deg.len()).filter(is_measured).collect();
+    let runs: Vec<&[usize]> = known.chunk_by(|a, b| angles_deg[*a] == angles_deg[*b]).collect();
+    let repeats = known.len() - runs.len();
+    let held = || runs.iter().filter(|run| run.len() >= HELD);
+    let in_held = held().map(|run| run.len() - 1).sum::<usize>();
+    let said = |rows: usize, first: usize, what: &str| {
+        format!(
+            "{joint} is exactly {} in {rows} frame(s), the first in row {}, {what}: was it filled in? Leave empty what \
+             is not known",
+            angles_deg[first],
+            first + 1
+        )
+    };
+    if in_held > 0 && (repeats - in_held) as f64 <= FEW * known.len() as f64 {
+        let longest = held().max_by_key(|run| run.len())?;
+        return Some(said(longest.len(), longest[0], "one after the other, though it is measured"));
+    }
+    let mut odd: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
+    for around in runs.windows(3) {
+        let [before, run, after] = [around[0][around[0].len() - 1], around[1][0], around[2][0]];
+        let by = [before, after].map(|row| angles_deg[run] - angles_deg[row]);
+        let far = FAR_DEG.max(FAR_SDS * sds_deg[before].hypot(sds_deg[run]));
+        if by[0] * by[1] > 0.0 && by.iter().all(|by| by.abs() > far) {
+            let (_, rows) = odd.entry(angles_deg[run].to_bits()).or_insert((run, 0));
+            *rows += around[1].len();
+        }
+    }
+    let (first, rows) = odd.into_values().max_by_key(|(first, rows)| (*rows, usize::MAX - first))?;
+    (rows >= OFTEN).then(|| said(rows, first, "far from the frames around"))
 }
 
 /// `J2_deg` is the angle of `J2`; `J2_sd_deg` is nobody's angle.
@@ -209,6 +256,25 @@ mod tests {
         let of = |most: &str| read(&format!("time_s,J2_deg\n0,0\n1,{most}\n")).unwrap().warnings.concat();
         assert!(of("1.4").contains("no angle is further from 0 than 1.40 degrees"), "{}", of("1.4"));
         assert_eq!([of("0.2"), of("4")].concat(), "");
+    }
+
+    #[test]
+    fn angles_that_were_filled_in_are_doubted() {
+        let said = |sd: f64, of: &dyn Fn(usize, f64) -> f64| {
+            let angle = |k: usize| 40.0 - 35.0 * (0.05 * k as f64).cos() + 0.03 * ((k * 7) % 11) as f64;
+            let row = |k: usize| format!("{k},{:.4},{sd}\n", of(k, angle(k)));
+            let rows = (0..300).map(row).collect::<String>();
+            read(&format!("time_s,J2_deg,J2_sd_deg\n{rows}")).unwrap().warnings.concat()
+        };
+        assert_eq!(said(0.2, &|_, angle| angle), "");
+        let zeros = said(0.2, &|k, angle| if (100..190).contains(&k) { 0.0 } else { angle });
+        assert!(zeros.contains("J2 is exactly 0 in 90 frame(s), the first in row 101, one after"), "{zeros}");
+        let none = said(0.2, &|k, angle| if k % 7 == 3 { -1.0 } else { angle });
+        assert!(none.contains("J2 is exactly -1 in ") && none.contains("far from the frames around"), "{none}");
+        // Whole degrees, a rest that is known exactly, one glitch.
+        assert_eq!(said(0.2, &|_, angle| angle.round()), "");
+        assert_eq!(said(0.0, &|k, angle| if (100..190).contains(&k) { 0.0 } else { angle }), "");
+        assert_eq!(said(0.2, &|k, angle| if k == 70 { 99.0 } else { angle }), "");
     }
 
     #[test]

@@ -32,6 +32,7 @@ pub use normalize::{
 pub(crate) use normalize::{Normalizer, normalized_or_why};
 pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
 pub use pose::THESIS_POSES;
+pub(crate) use pose::is_of_thesis;
 pub use results::NailRow;
 pub(crate) use results::Scratch;
 pub use set::{Photo, PhotoSet, SetError, SetFault};

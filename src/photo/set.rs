@@ -113,16 +113,23 @@ pub struct PhotoSet {
     pub faults: Vec<SetFault>,
     /// Photographs beside those that a manifest names, sorted.
     pub unlisted: Vec<String>,
+    /// Folders within those of poses that hold photographs, which are not used, and how many, sorted.
+    pub deeper: Vec<(String, usize)>,
 }
 
 impl PhotoSet {
+    fn empty(folder: &Path) -> Self {
+        let (photos, faults, unlisted, deeper) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { folder: folder.to_owned(), photos, faults, unlisted, deeper }
+    }
+
     /// Lists `folder`; folders of `apart` (results, masks) inside of it are no poses.
     ///
     /// # Errors
     /// [`SetError`] where there is no list: folder or manifest unreadable, or nothing in it.
     pub fn open(folder: &Path, apart: &[&Path]) -> Result<Self, SetError> {
         let manifest = folder.join("photos.csv");
-        let mut set = Self { folder: folder.to_owned(), photos: Vec::new(), faults: Vec::new(), unlisted: Vec::new() };
+        let mut set = Self::empty(folder);
         if manifest.is_file() {
             set.read_manifest(&manifest)?
         } else {
@@ -156,7 +163,7 @@ impl PhotoSet {
     /// A set of photographs that are known one by one; those that can't be used are among its faults.
     #[must_use]
     pub fn of(photos: Vec<Photo>) -> Self {
-        let mut set = Self { folder: PathBuf::new(), photos: Vec::new(), faults: Vec::new(), unlisted: Vec::new() };
+        let mut set = Self::empty(Path::new(""));
         for photo in photos {
             match name_fault("subject", &photo.subject).or_else(|| name_fault("pose", &photo.pose)) {
                 Some(what) => set.fault(photo.file, what),
@@ -196,8 +203,16 @@ impl PhotoSet {
         let before = self.photos.len();
         for pose_folder in folders.iter().filter(|f| !is_apart(f)) {
             let pose = name_of(pose_folder);
-            for file in list(pose_folder)?.0 {
+            let (files, within) = list(pose_folder)?;
+            for file in files {
                 self.consider(&file, &pose, format!("{pose}/{}", name_of(&file)));
+            }
+            for folder in within.iter().filter(|folder| !is_apart(folder)) {
+                let pictures =
+                    list(folder).map_or(0, |(files, _)| files.iter().filter(|file| is_picture(file)).count());
+                if pictures > 0 {
+                    self.deeper.push((format!("{pose}/{}", name_of(folder)), pictures));
+                }
             }
         }
         let has_poses = self.photos.len() > before;

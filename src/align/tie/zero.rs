@@ -102,7 +102,8 @@ fn the_one(zeros: &[(f64, f64)]) -> Result<Option<f64>, String> {
             }
             Err(format!(
                 "the clock in the picture doesn't tell which hour or day of the log it shows: its zero may be {} of \
-                 the log's time; give the log's time when the clock shows zero",
+                 the log's time; say the log's time when the clock shows zero with --clock-zero, or, of a log in \
+                 milliseconds, --time-unit ms",
                 listed.join(" or ")
             ))
         }

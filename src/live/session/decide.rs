@@ -23,6 +23,10 @@ use crate::predictor::Answering;
 /// Whole numbers beyond this are no volts (assumed: no photodiode's amplifier reaches it).
 const COUNT_V: f64 = 30.0;
 
+/// What to say of them.
+pub(super) const COUNTS: &str = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and \
+                                 models read volts; say what a step is, as --volts-per-count 10/65536";
+
 /// A finger, before the columns of its stream are known.
 pub(super) struct Plan {
     /// Its name and its place, where there are several.
@@ -43,6 +47,8 @@ pub(super) struct Decide {
     pub(super) samples: Option<Samples>,
     pub(super) answers: Option<Answers>,
     pub(super) rows: u64,
+    /// Whether the photodiodes look like a converter's counts, which models read as volts.
+    pub(super) are_counts: bool,
     /// The time of the first row and of the last, of the stream's clock, seconds.
     pub(super) span_s: Option<[f64; 2]>,
     /// The recorded clock less the stream's, seconds.
@@ -102,7 +108,8 @@ impl Decide {
             }
         };
         let samples = recording.map(|recording| Samples::new(recording, &columns, joins_forces));
-        Ok(Self { finger, columns, samples, answers, rows: 0, span_s: None, ahead_s: 0.0, volts: Vec::new() })
+        let (rows, span_s, are_counts) = (0, None, false);
+        Ok(Self { finger, columns, samples, answers, rows, are_counts, span_s, ahead_s: 0.0, volts: Vec::new() })
     }
 
     /// A row has come, at `common_s` of the clock that all sources are on.
@@ -116,10 +123,11 @@ impl Decide {
         kept: Kept<'_>,
         outputs: &mut Outputs,
     ) -> Result<(), LiveError> {
-        if self.rows == 0 && self.answers.is_some() && self.looks_like_counts(row) {
-            let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models \
-                        read volts; say what a step is, as --volts-per-count 10/65536";
-            return Err(LiveError::Request(what.to_owned()));
+        if self.rows == 0 && self.looks_like_counts(row) {
+            if self.answers.is_some() {
+                return Err(LiveError::Request(COUNTS.to_owned()));
+            }
+            self.are_counts = true;
         }
         self.rows += 1;
         if row.time_s.is_finite() {

@@ -7,7 +7,7 @@ use lunula_live::latency::{Latency as Times, LatencySummary};
 use lunula_live::source::{StreamCertificate, StreamTimes};
 use serde::Serialize;
 
-use super::decide::Decide;
+use super::decide::{COUNTS, Decide};
 use super::feed::Feed;
 use super::lane::{Lane, Shared};
 use super::outputs::pointer::{PointerCounts, PointerOutput};
@@ -212,8 +212,8 @@ impl SessionFigures {
 
     /// Adds what was made of a finger's rows, and ends its recording. Returns what to doubt of it.
     fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) -> Vec<String> {
-        let Decide { samples, answers, rows, span_s, .. } = decide;
-        let mut doubts = Vec::new();
+        let Decide { samples, answers, rows, span_s, are_counts, .. } = decide;
+        let mut doubts: Vec<String> = are_counts.then(|| COUNTS.to_owned()).into_iter().collect();
         self.rows += rows;
         if let Some(answers) = answers {
             let sensor = &answers.sensor;

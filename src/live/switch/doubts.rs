@@ -85,8 +85,8 @@ fn closed(trace: &Trace, found: &[Match]) -> Option<String> {
     let again = found.iter().filter(|one| one.fate == Fate::Repeated && one.contact == Some(*longest)).count();
     (again >= PRESSES && length_s(longest) >= LONG * usual_s).then(|| {
         format!(
-            "contact lasts from {:.1} to {:.1} s, {usual_s:.1} s in the median, and the finger presses {} times within: \
-             does the contact switch stick? Leave contact empty there",
+            "contact lasts from {:.1} to {:.1} s, {usual_s:.1} s in the median, and the finger presses {} times \
+             within: does the contact switch stick? Leave contact empty there",
             longest.start_s,
             longest.end_s,
             again + 1
@@ -108,8 +108,8 @@ fn open(trace: &Trace, found: &[Match]) -> Option<String> {
     let is_as_often = 2.0 * presses as f64 * touched_s >= contacts.len() as f64 * (to_s - from_s);
     (contacts.len() >= FEWEST && presses >= PRESSES && is_as_often).then(|| {
         format!(
-            "there is no contact from {from_s:.1} to {to_s:.1} s, and the finger presses {presses} times there: did the \
-             contact switch work? Leave contact empty there"
+            "there is no contact from {from_s:.1} to {to_s:.1} s, and the finger presses {presses} times there: did \
+             the contact switch work? Leave contact empty there"
         )
     })
 }

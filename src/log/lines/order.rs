@@ -4,7 +4,7 @@
 //!
 //! A run of rows that are late (behind the latest stamp so far) is a small disorder, and sorted, where it has at most
 //! [`LATE_ROWS`] rows, reaches back by at most as many steps, and takes a hole that is there for it: sorted, the rows
-//! there are about as dense as everywhere. Anything else that falls back is a clock that was reset, and so is a leap of
+//! there are about as dense as everywhere, and those after them are where they would have been. Anything else that falls back is a clock that was reset, and so is a leap of
 //! more than a day.
 
 use std::num::NonZeroUsize;
@@ -19,6 +19,9 @@ const LATE_ROWS: usize = 16;
 
 /// A step of more than so many usual ones is a gap.
 const GAP_STEPS: f64 = 5.0;
+
+/// Rows that stay behind by so many steps were not late.
+const STAYS: f64 = 0.75;
 
 /// Orders the rows by time.
 pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Result<Log, LogError> {
@@ -141,6 +144,23 @@ fn is_small(time_s: &[f64], k: usize, run: usize, latest: f64, step_s: f64) -> b
         && time_s.len() > 2
         && steps <= LATE_ROWS as f64
         && (0.6 * steps - 1.0..=1.5 * steps + 2.0).contains(&there)
+        && !stays_behind(time_s, k, run, earliest, step_s)
+}
+
+/// Whether rows that come evenly stay behind from there on, as where a clock was set back by little: late rows leave
+/// those after them where they would have been.
+fn stays_behind(time_s: &[f64], k: usize, run: usize, earliest: f64, step_s: f64) -> bool {
+    // Those before the hole that the late rows leave.
+    let hole = (k.saturating_sub(2 * LATE_ROWS)..k).find(|&row| time_s[row] >= earliest).unwrap_or(k);
+    let sides = [hole.saturating_sub(LATE_ROWS)..hole, k + run..(k + run + LATE_ROWS).min(time_s.len())];
+    let offsets = sides.map(|rows| {
+        let is_even = |pair: &[f64]| (0.5 * step_s..=1.5 * step_s).contains(&(pair[1] - pair[0]));
+        let steps = time_s[rows.clone()].windows(2);
+        let known = steps.len() >= LATE_ROWS / 2 && 5 * steps.clone().filter(|p| is_even(p)).count() >= 4 * steps.len();
+        median_of(rows.map(|row| time_s[row] - row as f64 * step_s)).filter(|_| known)
+    });
+    let [Some(before), Some(after)] = offsets else { return false };
+    after - before < -STAYS * step_s
 }
 
 /// Sorts rows that are out of order, and notes it.

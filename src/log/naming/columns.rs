@@ -145,7 +145,10 @@ fn unread_photodiodes(names: &[String], columns: &[(Role, usize)]) -> Vec<String
     if !columns.iter().any(|(role, _)| matches!(role, Role::Photodiode(_))) {
         return Vec::new();
     }
-    names.iter().enumerate().filter_map(unread).collect()
+    let zeroth = names.iter().find(|name| name.eq_ignore_ascii_case("P0")).map(|name| {
+        format!("column `{name}` is not read, as photodiodes are counted from 1; where it is one, call them P1, P2, ..")
+    });
+    names.iter().enumerate().filter_map(unread).chain(zeroth).collect()
 }
 
 /// What to say of a table's columns that look like photodiodes and have no name of the contract, where others have.

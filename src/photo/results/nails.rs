@@ -1,5 +1,7 @@
 //! The nails of a result: rows of `nails.csv`, and their sheets of thumbnails.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use image::GrayAlphaImage;
@@ -107,7 +109,11 @@ fn cells(row: &NailRow, set: &PhotoSet) -> [String; NAIL_COLUMNS.len()] {
     ]
 }
 
-/// The column that says whether a nail was used.
+/// Some columns of it: of which photograph and whose a nail is, where it lies, and whether it was used.
+const FILE: usize = 0;
+const SUBJECT: usize = 2;
+const POSE: usize = 3;
+const FRAME: Range<usize> = 6..11;
 const USED: usize = 11;
 /// Nails on a sheet of thumbnails.
 const NAILS_PER_SHEET: usize = 130;
@@ -164,10 +170,29 @@ impl NailTable {
             rows.extend(read(&part.join(NAME))?);
         }
         rows.sort_by_cached_key(|row: &Vec<String>| {
-            let (place, pose) = rank(&row[3]);
-            (place, pose.to_owned(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0))
+            let (place, pose) = rank(&row[POSE]);
+            (place, pose.to_owned(), row[SUBJECT].clone(), row[FILE].clone(), row[1].parse::<u32>().unwrap_or(0))
         });
         Ok(Self { rows, sheets: Vec::new() })
+    }
+
+    /// What to say of several people's nails that lie at one place of their photographs, to a thousandth of a pixel.
+    pub(in crate::photo) fn at_one_place(&self) -> Option<String> {
+        let mut places: BTreeMap<&[String], Vec<&Vec<String>>> = BTreeMap::new();
+        for row in self.rows.iter().filter(|row| row[USED] == "true") {
+            places.entry(&row[FRAME]).or_default().push(row);
+        }
+        let several = |rows: &&Vec<&Vec<String>>| rows.iter().any(|row| row[SUBJECT] != rows[0][SUBJECT]);
+        let mut files = places.values().filter(several).map(|rows| {
+            rows.iter().map(|row| format!("{} of {}", row[FILE], row[SUBJECT])).collect::<Vec<_>>().join(" and ")
+        });
+        let first = files.next()?;
+        let more = files.count();
+        let more = if more > 0 { format!(" ({more} more)") } else { String::new() };
+        Some(format!(
+            "nails of several people lie at one place to a thousandth of a pixel: {first}{more}; is one photograph a \
+             copy of the other, or its outline? Keep the right one"
+        ))
     }
 
     /// Writes `nails.csv`: every nail, used or not.
@@ -202,7 +227,7 @@ impl NailTable {
     pub(in crate::photo) fn pictures(&self, parts: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
         let used = (0..self.rows.len()).filter(|&row| self.is_used(row)).map(|row| &self.rows[row]);
         used.flat_map(move |row| {
-            parts.iter().map(move |part| part.join(format!("normalized/{}/{}.png", row[3], row[2])))
+            parts.iter().map(move |part| part.join(format!("normalized/{}/{}.png", row[POSE], row[SUBJECT])))
         })
     }
 

@@ -12,9 +12,9 @@ use crate::median::median_of;
 use crate::photo::hues::Mistaken;
 use crate::photo::normalize::{AT_FULL_SCALE, FULL_SCALE, Survey};
 use crate::photo::outline::Source;
+use crate::photo::pose;
 use crate::photo::results::NailRow;
 use crate::photo::set::{Photo, PhotoSet};
-use crate::words::nearest;
 
 /// A nail so many times brighter or darker than the median of all is of another exposure or depth (assumed: skin tones
 /// differ by 3 in green, exposures of one set by 2).
@@ -24,8 +24,6 @@ const NAILS: usize = 4;
 /// A picture with more than this share at its own greatest level, which is not full scale, was cut off there (119 nails
 /// of 26 real hands: 0.0035 at most; overexposed ones cut off at 240 or 250 of 255: 0.015 to 0.59).
 const CUT_OFF: f64 = 0.01;
-/// Photographs from which on a pose may be what another was meant to be.
-const USUAL: usize = 3;
 /// Names that a warning gives.
 const NAMES: usize = 3;
 
@@ -109,8 +107,10 @@ pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
         slanting(&nails),
         elsewhere(&nails),
         folders(set),
+        deeper(set),
     ];
-    doubts.into_iter().flatten().chain(exchanged(&nails)).chain(misspelt(set)).collect()
+    let names = || set.photos.iter().map(|photo| (photo.pose.as_str(), photo.subject.as_str()));
+    doubts.into_iter().flatten().chain(exchanged(&nails)).chain(pose::doubts(names)).collect()
 }
 
 /// A nail that was used.
@@ -256,16 +256,15 @@ fn folders(set: &PhotoSet) -> Option<String> {
     })
 }
 
-/// Poses of one photograph with a name that is nearly another's.
-fn misspelt(set: &PhotoSet) -> Vec<String> {
-    let count = |pose: &str| set.photos.iter().filter(|photo| photo.pose == pose).count();
-    let (rare, usual): (Vec<&str>, Vec<&str>) = set.poses().into_iter().partition(|pose| count(pose) < USUAL);
-    let one = |pose: &&str| {
-        let meant = nearest(pose, &usual).filter(|meant| strsim::osa_distance(pose, meant) == 1)?;
-        let is_numbered = |name: &str| name.ends_with(|last: char| last.is_ascii_digit());
-        (!is_numbered(pose) || !is_numbered(meant)).then(|| {
-            format!("pose `{pose}` has {} photograph(s), and `{meant}` {}: is it misspelt?", count(pose), count(meant))
-        })
-    };
-    rare.iter().filter_map(one).collect()
+/// Photographs in folders within those of poses.
+fn deeper(set: &PhotoSet) -> Option<String> {
+    let such = set.deeper.iter().map(|(folder, pictures)| format!("{pictures} picture(s) in {folder}"));
+    let such: Vec<String> = such.collect();
+    (!such.is_empty()).then(|| {
+        format!(
+            "folders within a pose's are not looked into: {}; move what belongs to the set up into the pose's folder, \
+             or list all in photos.csv",
+            some(&such)
+        )
+    })
 }

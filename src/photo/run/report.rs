@@ -23,7 +23,6 @@ use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Partials, Sums};
 use crate::photograph::Profile;
 use crate::stages::Stage;
-use crate::words::twins;
 
 /// Where the report goes among the results.
 const JSON: &str = "run.json";
@@ -210,8 +209,6 @@ impl<'a> Findings<'a> {
             .chain(self.blurred())
             .chain(self.overexposed())
             .chain(doubts(self.set, &self.rows))
-            .chain(twins("subjects", self.set.photos.iter().map(|photo| photo.subject.as_str())))
-            .chain(twins("poses", self.set.photos.iter().map(|photo| photo.pose.as_str())))
             .collect()
     }
 

@@ -20,6 +20,7 @@ use crate::files::Staging;
 use crate::job::{Report, Watch};
 use crate::photo::error::MergeError;
 use crate::photo::normalize::Normalization;
+use crate::photo::pose;
 use crate::photo::results::{NailTable, write_maps};
 use crate::photo::run::report::{PoseCount, mixed_sums, one_subject, pose_counts};
 use crate::stages::Stages;
@@ -97,7 +98,8 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
     let partials = Partials { normalization: members.normalization, poses };
     write_maps(&partials, figures, &staging, &stages)?;
     members.write_of_maps(&staging)?;
-    stages.time("table of nails", || Ok::<_, MergeError>(NailTable::of_parts(parts)?.write(&staging)?))?;
+    let nails = NailTable::of_parts(parts)?;
+    stages.time("table of nails", || nails.write(&staging))?;
     let accuracy = stages.time("accuracy", || Accuracy::of(&partials, truth))?;
     staging.commit()?;
 
@@ -108,7 +110,8 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
         .into_iter()
         .collect();
     let notes = one_subject(&poses).into_iter().collect();
-    let warnings = mixed_sums(&partials);
+    let mut warnings = mixed_sums(&partials);
+    warnings.extend(pose::doubts(|| members.names()).into_iter().chain(nails.at_one_place()));
     let figures = GatherFigures { poses, sums_added, sums_kept, normalization: partials.normalization, accuracy };
     Ok(Report { left_out, warnings, notes, ..Report::new("maps", watch, figures) }.timed(&stages, start))
 }

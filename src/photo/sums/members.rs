@@ -55,6 +55,13 @@ impl Members {
         self.poses.entry(pose.to_owned()).or_default().insert(member);
     }
 
+    /// Each pose and subject that was added.
+    pub(super) fn names(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.poses.iter().flat_map(|(pose, members)| {
+            members.iter().flat_map(|member| &member.subjects).map(move |subject| (pose.as_str(), subject.as_str()))
+        })
+    }
+
     /// The list of a part of a pipeline.
     ///
     /// # Errors

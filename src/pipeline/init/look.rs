@@ -16,7 +16,10 @@ const MASKS: [&str; 4] = ["mask", "masks", "label", "labels"];
 /// What was found, by sort; paths are relative to the folder, with `/`, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Inventory {
-    pub(super) files: usize,
+    /// All of them.
+    pub(super) all: Vec<String>,
+    /// How many names are not UTF-8, which no pattern has.
+    pub(super) unnamed: usize,
     pub(super) photos: Vec<String>,
     /// Pictures that are masks of photographs, by their names.
     pub(super) masks: Vec<String>,
@@ -72,12 +75,11 @@ enum Sort {
 /// # Errors
 /// Where it can't be read.
 pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
-    let mut paths = Vec::new();
     input::list(folder)?;
-    walk(folder, "", 0, &mut paths);
-    let mut found = Inventory { files: paths.len(), ..Inventory::default() };
+    let mut found = Inventory::default();
+    walk(folder, "", 0, &mut found);
     let mut tables = Vec::new();
-    for path in paths {
+    for path in found.all.clone() {
         match sort(&folder.join(&path)) {
             Sort::Photo => found.photos.push(path),
             Sort::Video => found.videos.push(path),
@@ -112,12 +114,15 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     Ok(found)
 }
 
-fn walk(folder: &Path, at: &str, depth: usize, paths: &mut Vec<String>) {
+fn walk(folder: &Path, at: &str, depth: usize, found: &mut Inventory) {
     let mut entries: Vec<(String, bool)> = std::fs::read_dir(folder.join(at))
         .into_iter()
         .flatten()
         .flatten()
-        .filter_map(|entry| Some((entry.file_name().into_string().ok()?, entry.path().is_dir())))
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().inspect_err(|_| found.unnamed += 1).ok()?;
+            Some((name, entry.path().is_dir()))
+        })
         .filter(|(name, _)| !name.starts_with('.'))
         .collect();
     entries.sort();
@@ -136,10 +141,10 @@ fn walk(folder: &Path, at: &str, depth: usize, paths: &mut Vec<String>) {
         let is_drawn = || drawn.iter().any(|stem| name.starts_with(stem.as_str())) && !is_table(&name);
         if !is_folder {
             if !is_drawn() {
-                paths.push(path);
+                found.all.push(path);
             }
         } else if depth < DEEPEST && name != "truth" && !results() {
-            walk(folder, &path, depth + 1, paths);
+            walk(folder, &path, depth + 1, found);
         }
     }
 }

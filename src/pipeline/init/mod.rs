@@ -42,10 +42,10 @@ pub enum InitError {
 pub fn propose(folder: &Path, from: &str) -> Result<String, InitError> {
     let found = look::look(folder).map_err(|why| InitError::Unreadable { path: folder.to_owned(), why })?;
     write::pipeline(&found, from).ok_or_else(|| {
-        let what = if found.files == 0 {
+        let what = if found.all.is_empty() {
             "holds no files".to_owned()
         } else {
-            format!("nothing that is known among {} file(s)", found.files)
+            format!("nothing that is known among {} file(s)", found.all.len())
         };
         InitError::Nothing { path: folder.to_owned(), what }
     })

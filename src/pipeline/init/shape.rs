@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::photo::is_of_thesis;
+
 /// A pattern and how many files it is for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct NamePattern {
@@ -17,7 +19,7 @@ pub(super) struct NamePattern {
 /// How the places of a pattern are called.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum PlaceNames<'a> {
-    /// Of nails: from the last one on subject, pose.
+    /// Of nails: from the last one on subject, pose, but for the one whose values are the thesis' poses.
     Nails,
     /// Of recordings: from the first one on subject, session, trial; a single one is a session.
     Recordings,
@@ -26,14 +28,27 @@ pub(super) enum PlaceNames<'a> {
 }
 
 impl PlaceNames<'_> {
-    fn name(self, place: usize, count: usize) -> String {
-        let (names, at): (&[&str], usize) = match self {
-            Self::Nails => (&["subject", "pose"], count - 1 - place),
-            Self::Recordings if count == 1 => (&["session"], place),
-            Self::Recordings => (&["subject", "session", "trial"], place),
-            Self::One(name) => return name.to_owned(),
+    /// Names of so many places; `pose` is the one of the poses, where values say it.
+    fn names(self, count: usize, pose: Option<usize>) -> Vec<String> {
+        let mut order: Vec<usize> = (0..count).collect();
+        let known: &[&str] = match self {
+            Self::Nails => {
+                order.reverse();
+                if let Some(pose) = pose.filter(|_| count > 1) {
+                    order.retain(|place| *place != pose);
+                    order.insert(1, pose);
+                }
+                &["subject", "pose"]
+            }
+            Self::Recordings if count == 1 => &["session"],
+            Self::Recordings => &["subject", "session", "trial"],
+            Self::One(name) => return vec![name.to_owned(); count],
         };
-        names.get(at).map_or_else(|| format!("part{}", at + 1), |name| (*name).to_owned())
+        let mut names = vec![String::new(); count];
+        for (at, place) in order.into_iter().enumerate() {
+            names[place] = known.get(at).map_or_else(|| format!("part{}", at + 1), |name| (*name).to_owned());
+        }
+        names
     }
 }
 
@@ -49,18 +64,12 @@ pub(super) fn shape(paths: &[String], places: PlaceNames<'_>) -> Option<NamePatt
     let parts: Vec<Vec<&str>> = group.iter().map(|path| stemmed(path)).collect();
     let depth = parts[0].len();
     let differs: Vec<usize> = (0..depth).filter(|&at| parts.iter().any(|part| part[at] != parts[0][at])).collect();
-    let name = |place: usize| places.name(place, differs.len());
-    let mut names = Vec::new();
-    let mut pattern = Vec::new();
-    for (at, &part) in parts[0].iter().enumerate() {
-        match differs.iter().position(|&differing| differing == at) {
-            Some(place) => {
-                names.push(name(place));
-                pattern.push(format!("{{{}}}", name(place)));
-            }
-            None => pattern.push(plain(part)),
-        }
-    }
+    // Of five files, four at least.
+    let are_poses = |at: &usize| 5 * parts.iter().filter(|part| is_of_thesis(part[*at])).count() >= 4 * parts.len();
+    let names = places.names(differs.len(), differs.iter().position(are_poses));
+    let named = |at: usize| Some(&names[differs.iter().position(|&differing| differing == at)?]);
+    let part = |(at, part): (usize, &&str)| named(at).map_or_else(|| plain(part), |name| format!("{{{name}}}"));
+    let pattern: Vec<String> = parts[0].iter().enumerate().map(part).collect();
     let values = parts.iter().map(|part| differs.iter().map(|&at| part[at].to_owned()).collect()).collect();
     let ending = group[0].rsplit_once('.').map_or(String::new(), |(_, ending)| format!(".{ending}"));
     let others = paths.iter().filter(|path| !group.contains(path)).cloned().collect();

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use super::look::Inventory;
 use super::shape::{NamePattern, PlaceNames, shape};
+use crate::pipeline::items::pattern::{Listed, Match, Pattern};
 
 /// How many names of a sort are listed.
 const TOLD: usize = 3;
@@ -35,6 +36,8 @@ impl Input {
 /// A pipeline file in the making.
 struct Draft<'a> {
     from: &'a str,
+    /// All files of the folder.
+    all: Listed,
     notes: Vec<String>,
     inputs: String,
     stages: String,
@@ -43,11 +46,21 @@ struct Draft<'a> {
 
 /// The text; none where nothing found can be worked on.
 pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<String> {
-    let mut draft = Draft { from, notes: Vec::new(), inputs: String::new(), stages: String::new(), wanted: Vec::new() };
+    let mut draft = Draft {
+        from,
+        all: Listed::new(found.all.iter().map(String::as_str)),
+        notes: Vec::new(),
+        inputs: String::new(),
+        stages: String::new(),
+        wanted: Vec::new(),
+    };
     draft.photographs(found);
     draft.recordings(found);
     if !found.unknown.is_empty() {
         draft.notes.push(format!("not known, and not used: {}", listed(&found.unknown)));
+    }
+    if found.unnamed > 0 {
+        draft.notes.push(format!("{} names are not UTF-8, and are not looked at; rename them", found.unnamed));
     }
     if draft.wanted.is_empty() {
         return None;
@@ -78,17 +91,6 @@ impl Draft<'_> {
                  subject and pose,\n#   write files = \"..{subject}_{pose}..\""
                     .to_owned(),
             );
-        }
-        // A pattern would take masks that lie among photographs for photographs.
-        let folder = |path: &String| path.rsplit_once('/').map_or_else(String::new, |(folder, _)| folder.to_owned());
-        let folders: BTreeSet<String> = found.photos.iter().map(folder).collect();
-        if found.masks.iter().any(|mask| folders.contains(&folder(mask)))
-            && let Some(at) = photos.names.iter().position(|name| name == "subject")
-            && let Some(values) = &photos.values
-        {
-            let subjects: BTreeSet<String> = values.iter().map(|one| quoted(&one[at])).collect();
-            let subjects = subjects.into_iter().collect::<Vec<_>>().join(", ");
-            let _ = writeln!(self.inputs, "# All but the masks.\nwhere = {{ subject = [{subjects}] }}");
         }
         let without_masks = self.inputs.len();
         let (outlines, of_masks) = match self.files("masks", "masks of nails", &found.masks, PlaceNames::Nails) {
@@ -257,7 +259,34 @@ impl Draft<'_> {
             self.notes.push(format!("{what} that lie elsewhere, and are not used: {}", listed(&others)));
         }
         let _ = write!(self.inputs, "\n[inputs.{name}]\nfiles = {}\n", quoted(&format!("{}{pattern}", self.from)));
+        self.choose(what, &pattern, &names, &values);
         Some(Input { reference: name.to_owned(), names, values: Some(values) })
+    }
+
+    /// A `where` that leaves out what the pattern fits as well; `values` are of what is meant.
+    fn choose(&mut self, what: &str, pattern: &str, names: &[String], values: &[Vec<String>]) {
+        let Ok(pattern) = Pattern::parse(pattern) else { return };
+        let of = |found: &Match| names.iter().map(|name| found.keys.get(name).unwrap_or_default().to_owned()).collect();
+        let mut strays: Vec<Vec<String>> = pattern.find(&self.all).matches.iter().map(of).collect();
+        strays.retain(|stray| !values.contains(stray));
+        let of_key = |at: usize| values.iter().map(|one| one[at].as_str()).collect::<BTreeSet<&str>>();
+        let mut chosen = Vec::new();
+        for (at, name) in names.iter().enumerate() {
+            let known = of_key(at);
+            let before = strays.len();
+            strays.retain(|stray| known.contains(stray[at].as_str()));
+            if strays.len() < before {
+                let known: Vec<String> = known.into_iter().map(quoted).collect();
+                chosen.push(format!("{name} = [{}]", known.join(", ")));
+            }
+        }
+        if !chosen.is_empty() {
+            let chosen = chosen.join(", ");
+            let _ = writeln!(self.inputs, "# Only {what}: the pattern fits other files too.\nwhere = {{ {chosen} }}");
+        }
+        if !strays.is_empty() {
+            self.notes.push(format!("{what}: the pattern fits {} more files, which are none; move them", strays.len()));
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use regex_lite::Regex;
 
 use crate::job::Keys;
 
-pub(in crate::pipeline) use walk::{Disk, Listed, Tree};
+pub(in crate::pipeline) use walk::{Disk, Listed, Match, Tree};
 
 /// A pattern, taken apart.
 #[derive(Debug, Clone)]

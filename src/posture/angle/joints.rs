@@ -10,6 +10,7 @@
 //! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its
 //! signs.
 
+use super::cut::Cut;
 use super::frozen::Frozen;
 use super::lengths::Lengths;
 use super::metric::Metric;
@@ -61,6 +62,7 @@ pub(crate) struct Angles {
     metric: Metric,
     lengths: Lengths,
     frozen: Frozen,
+    cut: Cut,
     /// Of each joint, frames in which its segments overlap, and all.
     overlaps: Vec<[u64; 2]>,
 }
@@ -88,6 +90,7 @@ impl Angles {
             metric: Metric::new(layout.segments.len()),
             lengths: Lengths::new(layout.segments.len()),
             frozen: Frozen::default(),
+            cut: Cut::default(),
             overlaps: vec![[0; 2]; layout.joints.len()],
             layout: layout.clone(),
         }
@@ -101,7 +104,9 @@ impl Angles {
             format!("segment {} ({a} to {b}) {text}", segment.name)
         };
         let lengths = self.lengths.changing().into_iter().map(named);
-        self.metric.doubt().into_iter().chain(lengths).chain(self.frozen.doubt()).chain(self.overlapping()).collect()
+        // After pictures that stood still, angles leap as well.
+        let time = self.frozen.doubt().or_else(|| self.cut.doubt());
+        self.metric.doubt().into_iter().chain(lengths).chain(time).chain(self.overlapping()).collect()
     }
 
     /// What to say of joints whose segments lie over each other.
@@ -184,7 +189,9 @@ impl Angles {
             })
             .collect();
         let places = spots.iter().map(|spot| spot.as_ref().map(|spot| spot.at_px)).collect();
-        let turned = angles.iter().map(|angle| angle.map(|angle| [angle.rad, angle.sd_rad])).collect();
+        let turned: Vec<Option<[f64; 2]>> =
+            angles.iter().map(|angle| angle.map(|angle| [angle.rad, angle.sd_rad])).collect();
+        self.cut.add(&turned);
         self.frozen.add(places, turned);
         AngleRow { angles, lost }
     }

@@ -1,5 +1,6 @@
 //! From centres to joint angles: lens, picture as shown, joints, smoothing, and whether a finger can have such angles.
 
+mod cut;
 mod frozen;
 pub(super) mod joints;
 mod lengths;

@@ -76,8 +76,8 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
     })
 }
 
-/// Joints that are hardly meant so: numbered against the finger's order, or of two segments that begin at one marker.
-/// Each with its name.
+/// Joints that are hardly meant so: numbered against the finger's order, of two segments that begin at one marker, or
+/// of a segment that an earlier joint has on the same side. Each with its name.
 fn odd_joints<'a>(
     joints: &'a [(String, [usize; 2])],
     segments: &'a [(String, [usize; 2])],
@@ -101,7 +101,18 @@ fn odd_joints<'a>(
                 segments[*proximal].0, segments[*distal].0
             )
         });
-        exchanged.into_iter().chain(overlap).map(move |what| (name.as_str(), what))
+        // What is called otherwise may well reach over several joints.
+        let earlier = joints.iter().take_while(|other| *other != joint).filter(|other| number(&other.0).is_some());
+        let again = earlier.filter(|_| number(name).is_some()).find_map(|(other, pair)| {
+            let side = (0..2).find(|&side| pair[side] == joint.1[side])?;
+            let both =
+                if *pair == joint.1 { "both segments" } else { ["the proximal segment", "the distal segment"][side] };
+            Some(format!(
+                "{other} and {name} have {both} in common, and joints of a finger follow each other, each between two \
+                 segments of its own: was a line copied, or a segment left out?"
+            ))
+        });
+        exchanged.into_iter().chain(overlap).chain(again).map(move |what| (name.as_str(), what))
     })
 }
 
