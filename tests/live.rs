@@ -318,6 +318,8 @@ fn bad_sources_are_said_with_what_to_do() {
     let counts: String = (0..40).map(|k| format!("{k},{}\n", 6553 + k)).collect();
     dir.write("counts.csv", format!("time_s,P1\n{counts}"));
     live("counts.csv", &["look like a converter's counts", "--volts-per-count 10/65536"]);
+    let kept = dir.lunula(&["record", "--source", "counts.csv", "--out", "counts.kept.csv"]);
+    kept.expect(0).says("look like a converter's counts");
     let scaled = ["live", "--source", "counts.csv", "--model", "m.json", "--volts-per-count", "10/65536", "-q"];
     dir.lunula(&scaled).expect(0);
     let mut garbage = start(&dir, &["live", "--source", "-", "--model", "m.json"]);

@@ -271,6 +271,21 @@ fn photographs_that_may_be_of_another_pose_are_named() {
 }
 
 #[test]
+fn folders_of_people_and_folders_within_poses_are_named() {
+    let dir = Dir::new();
+    for nail in ["anna/normal", "anna/flexion", "ben/normal", "ben/flexion"] {
+        dir.nail(&format!("people/{nail}"));
+    }
+    let people = dir.lunula(&["photos", "people", "--out", "of-people"]).expect(0);
+    people.says("the subjects are called flexion, normal, which are poses, and the poses anna, ben");
+    for nail in ["normal/a", "normal/b", "normal/retake/c"] {
+        dir.nail(&format!("posed/{nail}"));
+    }
+    let deeper = dir.lunula(&["photos", "posed", "--out", "of-posed"]).expect(0);
+    deeper.says("folders within a pose's are not looked into: 1 picture(s) in normal/retake");
+}
+
+#[test]
 fn a_manifest_s_faults_are_named_by_line() {
     let dir = good_set();
     let rows = "a.png,a,p\nmissing.png,x,p\n,y,p\nb.png,b,p\nc.png,../up,p\nc.png,c,p\n";

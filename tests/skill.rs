@@ -320,6 +320,24 @@ fn a_column_of_subjects_is_believed_and_another_name_is_warned_of() {
 }
 
 #[test]
+fn noise_near_the_threshold_is_no_contact() {
+    let dir = Dir::new();
+    let presses: Vec<Press> = (0..6).map(|k| press(1.0 + f64::from(k), 0.3, 2.0)).collect();
+    let noisy = |by_n: f64| {
+        let mut rows = rows(0.0, 8.0, &[&presses]);
+        rows.iter_mut().enumerate().for_each(|(k, row)| row[1] += by_n * (((k * k * 31) % 17) as f64 / 8.0 - 1.0));
+        csv("time_s,Fz_N", &rows)
+    };
+    dir.write("noisy.csv", noisy(0.25));
+    run(&dir, "noisy.csv --out o")
+        .expect(0)
+        .says("noisy.csv: trial noisy: ")
+        .says("(SD) from row to row, and --touch is");
+    dir.write("quiet.csv", noisy(0.03));
+    assert!(!run(&dir, "quiet.csv --out p").expect(0).stderr.contains("scatters"));
+}
+
+#[test]
 fn wrong_recordings_are_refused_and_others_are_done() {
     let dir = Dir::new();
     dir.write("good.csv", csv(NAMES, &rows(0.0, 4.0, &[&INDEX, &MIDDLE])));

@@ -4,8 +4,8 @@
 //!
 //! A run of rows that are late (behind the latest stamp so far) is a small disorder, and sorted, where it has at most
 //! [`LATE_ROWS`] rows, reaches back by at most as many steps, and takes a hole that is there for it: sorted, the rows
-//! there are about as dense as everywhere, and those after them are where they would have been. Anything else that falls back is a clock that was reset, and so is a leap of
-//! more than a day.
+//! there are about as dense as everywhere, and those after them are where they would have been. Anything else that
+//! falls back is a clock that was reset, and so is a leap of more than a day.
 
 use std::num::NonZeroUsize;
 

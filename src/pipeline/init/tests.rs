@@ -40,12 +40,30 @@ fn names_that_differ_become_places() {
     assert_eq!(shaped(&["x/1/a/v.mp4", "x/2/b/v.mp4"]), Some(("x/{pose}/{subject}/v.mp4".into(), 0)));
     assert_eq!(shaped(&["1/2/a.x", "3/4/b.x"]), Some(("{part3}/{pose}/{subject}.x".into(), 0)));
     assert_eq!(shaped(&[]), None);
+    // Folders of people.
+    let people = ["p/s01/normal.png", "p/s01/flexion.png", "p/s02/normal.png", "p/s02/flexion.png"];
+    assert_eq!(shaped(&people), Some(("p/{subject}/{pose}.png".into(), 0)));
+    assert_eq!(shaped(&["a/normal/1.png", "b/flexion/2.png"]), Some(("{part3}/{pose}/{subject}.png".into(), 0)));
     // The outermost place of recordings is the person, whatever lies below.
     let recordings = |paths: &[&str]| of(paths, PlaceNames::Recordings).unwrap().0;
     assert_eq!(recordings(&["anna/1/v.mp4", "ben/2/v.mp4"]), "{subject}/{session}/v.mp4");
     assert_eq!(recordings(&["anna/1/a.csv", "ben/2/b.csv"]), "{subject}/{session}/{trial}.csv");
     assert_eq!(recordings(&["a/b/c/d.csv", "e/f/g/h.csv"]), "{subject}/{session}/{trial}/{part4}.csv");
     assert_eq!(recordings(&["S01/log.csv", "S02/log.csv"]), "{session}/log.csv");
+}
+
+#[test]
+fn what_a_pattern_fits_as_well_is_left_out() {
+    let (text, tasks) = proposed(&[
+        ("S01.csv", LOG),
+        ("S02.csv", LOG),
+        ("participants.csv", "subject,age\nS01,31\n"),
+        ("S01_training.csv", "time_s,P1,J2_deg,label_status\n0,1,2,ok\n"),
+    ]);
+    assert!(text.contains("files = \"{session}.csv\"\n# Only logs of photodiodes: the pattern fits"), "{text}");
+    assert!(text.contains("where = { session = [\"S01\", \"S02\"] }"), "{text}");
+    assert_eq!(tasks, ["force"]);
+    assert!(!proposed(&[("S01.csv", LOG), ("S02.csv", LOG)]).0.contains("where ="));
 }
 
 #[test]

@@ -4,8 +4,8 @@
 //! In: from frame to frame the joints' angles. Out: what to say where they leap. A finger that is fast leaps in the
 //! frames beside as well, and what was mistaken for a marker leaps back.
 //!
-//! Measured on a phantom of 20 s: 3.3 s cut out, and two takes joined, are named; of the recordings of real and painted
-//! fingers and of phantoms with irregular times none is.
+//! Measured: a phantom of 20 s with 3.3 s cut out, and two takes joined, are named; none of 36 whole phantoms of 12 s
+//! is (scenes clean, hard, small and fast, three seeds, regular and irregular times, random movement).
 
 use std::collections::VecDeque;
 
@@ -66,7 +66,8 @@ impl Cut {
     pub(super) fn doubt(&self) -> Option<String> {
         let mut frames: Vec<u64> = self.leaps.iter().map(|(frame, _)| *frame).collect();
         frames.sort_unstable();
-        frames.dedup();
+        // Markers are found again within some frames.
+        frames.dedup_by(|frame, before| *frame - *before <= LOST);
         let first = *frames.first()?;
         let most_rad = self.leaps.iter().map(|(_, by_rad)| *by_rad).fold(0.0, f64::max);
         Some(format!(
@@ -106,7 +107,7 @@ mod tests {
     fn a_cut_is_seen_and_fast_fingers_and_glitches_are_not() {
         let bends = |frame: f64| Some([20.0 - 15.0 * (0.05 * frame).cos(), 40.0 - 40.0 * (0.05 * frame).cos()]);
         assert_eq!(said(|k| bends(k as f64)), None);
-        let cut = |k: usize| if k < 90 { k as f64 } else { k as f64 + 60.0 };
+        let cut = |k: usize| if k < 90 { k as f64 } else { k as f64 + 40.0 };
         let leaps = said(|k| bends(cut(k))).expect("it was cut");
         assert!(leaps.contains("in 1 place(s), the first before frame 90"), "{leaps}");
         // The markers are sought for some frames.

@@ -71,6 +71,11 @@ fn joints_that_are_hardly_meant_so_are_warned_of() {
     assert!(exchanged.len() == 1 && exchanged[0].starts_with("m.toml:12: J3 lies before J2"), "{exchanged:?}");
     let over = warnings(&chain.replace("[\"c\", \"d\"]", "[\"b\", \"d\"]"), "J3 = [\"m\", \"d\"]");
     assert!(over.len() == 1 && over[0].contains("both segments of J3, `m` and `d`, begin at"), "{over:?}");
+    let copied = warnings(chain, "J1 = [\"p\", \"m\"]\nJ2 = [\"p\", \"m\"]");
+    assert!(copied.len() == 1 && copied[0].contains("12: J1 and J2 have both segments in common"), "{copied:?}");
+    let skipped = warnings(chain, "J1 = [\"p\", \"m\"]\nJ2 = [\"p\", \"d\"]");
+    assert!(skipped.len() == 1 && skipped[0].contains("have the proximal segment in common"), "{skipped:?}");
+    assert_eq!(warnings(chain, "J1 = [\"p\", \"m\"]\nwhole = [\"p\", \"d\"]"), [""; 0]);
 }
 
 #[test]
