@@ -6,8 +6,8 @@ use lunula_live::switch::{Contact, Fate, Lag, Match, Trace, any_contact};
 use crate::median::median_of;
 
 /// By how much values follow contact at most, and come before it, seconds, and how much likeness a shift has to win
-/// (assumed: `Lag` says what phantoms give; blood takes 0.1 to 0.3 s, 4.3).
-const LATE_S: f64 = 0.3;
+/// (assumed: `Lag` says what phantoms give, 0.24 s at most; blood takes 0.1 to 0.3 s, 4.3).
+const LATE_S: f64 = 0.27;
 const EARLY_S: f64 = 0.1;
 const GAIN: f64 = 0.02;
 
@@ -15,7 +15,7 @@ const GAIN: f64 = 0.02;
 pub(super) fn on_another_clock(trace: &Trace) -> Option<String> {
     let Lag { by_s, shifted, recorded } = Lag::of(trace)?;
     let [side, than] = match by_s {
-        late if late > LATE_S + 1e-9 => ["after", "a nail takes 0.1 to 0.3 s"],
+        late if late > LATE_S => ["after", "a nail takes 0.1 to 0.3 s"],
         early if early < -EARLY_S - 1e-9 => ["before", "no finger does"],
         _ => return None,
     };

@@ -18,7 +18,6 @@ use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
 /// read it), motion.csv, presses.csv (onset, t50, t90 and tau of each press and release with 95 % intervals; research
 /// use, not a diagnostic), nail.png and nail.json (the outline, to be corrected), report.html, run.json.
 #[derive(Debug, Args)]
-#[command(mut_arg("out", |out| out.help("Folder of the results")))]
 #[command(mut_arg("no_figures", |no| no.help("Draw no pictures and write no page")))]
 pub(crate) struct NailVideoArgs {
     /// The video, in any format that FFmpeg reads

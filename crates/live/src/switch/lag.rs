@@ -2,9 +2,9 @@
 //!
 //! In: a [`Trace`]. Out: by how much contact has to be shifted to be likest to the values, a Pearson correlation of the
 //! rows around contacts. Blood takes 0.1 to 0.3 s (4.3): values that follow later, or that come before contact, are on
-//! another clock. *Measured* on three phantom recordings of contacts: 0.02 s with the model of contact with lags that
-//! `docs/src/jobs/live.md` trains, 0.1 to 0.14 s with those without, 0.22 to 0.26 s with forces learnt of spirals
-//! alone; with contact 0.3 s ahead as much more.
+//! another clock. *Measured* on three phantom recordings of contacts: -0.02 to 0.02 s with models of contact and of
+//! force that have lags, 0.06 to 0.12 s with those without, 0.24 s with forces learnt of spirals alone; with contact
+//! 0.4 s ahead so much more.
 
 use super::evaluate::Trace;
 

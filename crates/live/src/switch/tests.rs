@@ -243,7 +243,6 @@ fn false_switches_of_a_gaussian_error_are_as_many_as_rices_formula_says() {
     }
 }
 
-/// Contacts of 0.4 s every 5 s; the value follows 0.1 s late to 1 N, with noise of 0.05 N.
 #[test]
 fn how_far_values_follow_contact_is_found() {
     let late_by = |late_s: f64| {
@@ -267,6 +266,7 @@ fn how_far_values_follow_contact_is_found() {
     assert_eq!(Lag::of(&Trace { value: noise, ..plain }), None);
 }
 
+/// Contacts of 0.4 s every 5 s; the value follows 0.1 s late to 1 N, with noise of 0.05 N.
 fn trace(seed: u64, seconds: f64) -> Trace {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut trace = Trace { begins: vec![0], ..Trace::default() };

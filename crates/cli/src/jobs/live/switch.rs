@@ -51,7 +51,6 @@ struct TuneArgs {
 ///
 /// Results: switch.json, presses.csv (presses that are judged and contacts that were missed), delays.png and .svg.
 #[derive(Debug, Args)]
-#[command(mut_arg("out", |out| out.value_name("FOLDER").help("The folder of results")))]
 struct EvaluateArgs {
     /// The switch
     #[arg(value_name = "SWITCH.toml")]
