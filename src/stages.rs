@@ -78,6 +78,11 @@ impl Step {
     pub fn new(stage: &'static str, runs: bool, reason: String) -> Self {
         Self { stage, fate: if runs { Fate::Run } else { Fate::LeftOut }, reason }
     }
+
+    /// The pictures of a job; `what` they show.
+    pub fn figures(drawn: bool, what: &str) -> Self {
+        Self::new("figures", drawn, if drawn { what } else { "not asked for" }.to_owned())
+    }
 }
 
 /// What of a plan does not run, and why, a line each as reports tell it.

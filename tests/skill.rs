@@ -329,10 +329,7 @@ fn noise_near_the_threshold_is_no_contact() {
         csv("time_s,Fz_N", &rows)
     };
     dir.write("noisy.csv", noisy(0.25));
-    run(&dir, "noisy.csv --out o")
-        .expect(0)
-        .says("noisy.csv: trial noisy: ")
-        .says("(SD) from row to row, and --touch is");
+    run(&dir, "noisy.csv --out o").expect(0).says("noisy.csv: trial noisy: ").says("N (SD) or more, and --touch is");
     dir.write("quiet.csv", noisy(0.03));
     assert!(!run(&dir, "quiet.csv --out p").expect(0).stderr.contains("scatters"));
 }

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::flexion;
+use crate::median::median_of;
 use crate::table::{Table, TableError};
 
 /// No joint turns further, degrees: `lunula posture` follows angles past half a turn.
@@ -154,14 +155,15 @@ fn empty_lost(angles_deg: &mut [Vec<f64>], lost: &[bool]) -> Option<String> {
     ))
 }
 
-/// So many frames of one angle to the last digit were not measured, where few others repeat the one before.
+/// So many frames of one angle to the last digit were not measured where the angle leaps before or after them.
 const HELD: usize = 10;
-const FEW: f64 = 0.1;
-/// An angle to the last digit that stands so often between frames on its other side stands for none: it is so far from
-/// both, degrees and standard errors (assumed: a finger turns back by less within a frame).
+/// An angle to the last digit that stands so often between frames on its other side stands for none.
 const OFTEN: usize = 3;
-const FAR_DEG: f64 = 5.0;
-const FAR_SDS: f64 = 10.0;
+/// A leap: degrees, standard errors, and times as much as angles usually change (assumed: a finger turns back by less
+/// within a frame).
+const LEAP_DEG: f64 = 2.0;
+const LEAP_SDS: f64 = 10.0;
+const LEAP_TIMES: f64 = 8.0;
 
 /// What to say of frames whose angle of a joint stands for none, or was held. Angles whose standard error is 0, or
 /// not known, are not measured.
@@ -169,33 +171,33 @@ fn filled_in(joint: &str, angles_deg: &[f64], sds_deg: &[f64]) -> Option<String>
     let is_measured = |row: &usize| angles_deg[*row].is_finite() && sds_deg[*row] > 0.0;
     let known: Vec<usize> = (0..angles_deg.len()).filter(is_measured).collect();
     let runs: Vec<&[usize]> = known.chunk_by(|a, b| angles_deg[*a] == angles_deg[*b]).collect();
-    let repeats = known.len() - runs.len();
-    let held = || runs.iter().filter(|run| run.len() >= HELD);
-    let in_held = held().map(|run| run.len() - 1).sum::<usize>();
-    let said = |rows: usize, first: usize, what: &str| {
-        format!(
-            "{joint} is exactly {} in {rows} frame(s), the first in row {}, {what}: was it filled in? Leave empty what \
-             is not known",
-            angles_deg[first],
-            first + 1
-        )
+    let by_deg = |pair: &[&[usize]]| angles_deg[pair[1][0]] - angles_deg[pair[0][0]];
+    let usual_deg = median_of(runs.windows(2).map(|pair| by_deg(pair).abs()))?;
+    let leaps = |pair: &[&[usize]]| {
+        let sd_deg = sds_deg[pair[0][0]].hypot(sds_deg[pair[1][0]]);
+        by_deg(pair).abs() > LEAP_DEG.max(LEAP_SDS * sd_deg).max(LEAP_TIMES * usual_deg)
     };
-    if in_held > 0 && (repeats - in_held) as f64 <= FEW * known.len() as f64 {
-        let longest = held().max_by_key(|run| run.len())?;
-        return Some(said(longest.len(), longest[0], "one after the other, though it is measured"));
-    }
-    let mut odd: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
+    // Of each value: where it stands first, in how many frames, and whether one after the other.
+    let mut odd: BTreeMap<u64, (usize, usize, bool)> = BTreeMap::new();
     for around in runs.windows(3) {
-        let [before, run, after] = [around[0][around[0].len() - 1], around[1][0], around[2][0]];
-        let by = [before, after].map(|row| angles_deg[run] - angles_deg[row]);
-        let far = FAR_DEG.max(FAR_SDS * sds_deg[before].hypot(sds_deg[run]));
-        if by[0] * by[1] > 0.0 && by.iter().all(|by| by.abs() > far) {
-            let (_, rows) = odd.entry(angles_deg[run].to_bits()).or_insert((run, 0));
-            *rows += around[1].len();
+        let [before, after] = [&around[..2], &around[1..]];
+        let is_held = around[1].len() >= HELD && (leaps(before) || leaps(after));
+        let stands_out = leaps(before) && leaps(after) && by_deg(before) * by_deg(after) < 0.0;
+        if is_held || stands_out {
+            let first = around[1][0];
+            let (_, frames, held) = odd.entry(angles_deg[first].to_bits()).or_insert((first, 0, false));
+            *frames += around[1].len();
+            *held |= is_held;
         }
     }
-    let (first, rows) = odd.into_values().max_by_key(|(first, rows)| (*rows, usize::MAX - first))?;
-    (rows >= OFTEN).then(|| said(rows, first, "far from the frames around"))
+    let often = odd.into_values().filter(|(_, frames, held)| *held || *frames >= OFTEN);
+    let (first, frames, _) = often.max_by_key(|(first, frames, _)| (*frames, usize::MAX - first))?;
+    Some(format!(
+        "{joint} is exactly {} in {frames} frame(s), the first in row {}, far from the frames around them: was it \
+         filled in? Leave empty what is not known",
+        angles_deg[first],
+        first + 1
+    ))
 }
 
 /// `J2_deg` is the angle of `J2`; `J2_sd_deg` is nobody's angle.
@@ -268,10 +270,13 @@ mod tests {
         };
         assert_eq!(said(0.2, &|_, angle| angle), "");
         let zeros = said(0.2, &|k, angle| if (100..190).contains(&k) { 0.0 } else { angle });
-        assert!(zeros.contains("J2 is exactly 0 in 90 frame(s), the first in row 101, one after"), "{zeros}");
+        assert!(zeros.contains("J2 is exactly 0 in 90 frame(s), the first in row 101, far from"), "{zeros}");
         let none = said(0.2, &|k, angle| if k % 7 == 3 { -1.0 } else { angle });
         assert!(none.contains("J2 is exactly -1 in ") && none.contains("far from the frames around"), "{none}");
-        // Whole degrees, a rest that is known exactly, one glitch.
+        let held = said(0.2, &|k, angle| if (130..150).contains(&k) { 22.0 } else { angle });
+        assert!(held.contains("J2 is exactly 22 in 20 frame(s), the first in row 131, far from"), "{held}");
+        // Whole degrees, a rest, which may be smoothed, or is known exactly, one glitch.
+        assert_eq!(said(0.2, &|k, angle| if k > 62 { 75.2 } else { angle }), "");
         assert_eq!(said(0.2, &|_, angle| angle.round()), "");
         assert_eq!(said(0.0, &|k, angle| if (100..190).contains(&k) { 0.0 } else { angle }), "");
         assert_eq!(said(0.2, &|k, angle| if k == 70 { 99.0 } else { angle }), "");

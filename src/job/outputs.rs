@@ -36,8 +36,7 @@ impl Outputs {
     pub fn figures_step(outputs: Option<&Self>, what: &str) -> Step {
         match outputs {
             None => Step::new("figures", false, "no --out".to_owned()),
-            Some(outputs) if outputs.figures => Step::new("figures", true, what.to_owned()),
-            Some(_) => Step::new("figures", false, "not asked for".to_owned()),
+            Some(outputs) => Step::figures(outputs.figures, what),
         }
     }
 

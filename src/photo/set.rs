@@ -22,6 +22,9 @@ use crate::words::shown;
 const OTHER_PICTURES: [&str; 14] =
     ["heic", "heif", "webp", "gif", "avif", "jxl", "jp2", "cr2", "cr3", "nef", "arw", "dng", "raf", "orf"];
 
+/// What folders of masks, and the ends of masks' names, are called.
+pub(crate) const MASKS: [&str; 4] = ["mask", "masks", "label", "labels"];
+
 /// One photograph of a set.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Photo {
@@ -207,7 +210,11 @@ impl PhotoSet {
             for file in files {
                 self.consider(&file, &pose, format!("{pose}/{}", name_of(&file)));
             }
-            for folder in within.iter().filter(|folder| !is_apart(folder)) {
+            let is_of_set = |folder: &&PathBuf| {
+                let name = name_of(folder).to_lowercase();
+                !(is_apart(folder) || MASKS.contains(&name.as_str()) || name.starts_with('@'))
+            };
+            for folder in within.iter().filter(is_of_set) {
                 let pictures =
                     list(folder).map_or(0, |(files, _)| files.iter().filter(|file| is_picture(file)).count());
                 if pictures > 0 {

@@ -103,10 +103,6 @@ pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs
         Step::new("OpenSim motion file", mot, mot_why),
         Step::new("BIDS Motion folder", bids, bids_why),
         Step::new("DeepLabCut table", dlc, dlc_why),
-        Step::new(
-            "figures",
-            figures,
-            if figures { "of the tie and of the labels" } else { "not asked for" }.to_owned(),
-        ),
+        Step::figures(figures, "of the tie and of the labels"),
     ]
 }

@@ -45,6 +45,6 @@ pub(in crate::camera) fn steps(
         Step::new("lens", true, format!("focal lengths, axis, {} coefficients{held}", options.coefficients)),
         Step::new("plane of the finger", has_plane, of_plane.to_owned()),
         Step::new("pictures undistorted", false, "points are, by the jobs that measure".to_owned()),
-        Step::new("figures", figures, if figures { "corners on the picture" } else { "not asked for" }.to_owned()),
+        Step::figures(figures, "corners on the picture"),
     ]
 }

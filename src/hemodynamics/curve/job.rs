@@ -40,7 +40,7 @@ pub(super) fn steps(options: &CurveOptions, outputs: Option<&Outputs>, units: Op
     vec![
         Step::new("equilibria", true, format!("{units}{loads} loads, {}", options.range.pressed.word())),
         Step::new("run over time", false, "--static".to_owned()),
-        Step::new("figures", pictures, if pictures { "photodiodes over the load" } else { "--no-figures" }.to_owned()),
+        Step::figures(pictures, "photodiodes over the load"),
     ]
 }
 

@@ -106,7 +106,7 @@ pub(super) fn steps(
             }
             .to_owned(),
         ),
-        Step::new("figures", pictures, if pictures { "measured and fitted" } else { "--no-figures" }.to_owned()),
+        Step::figures(pictures, "measured and fitted"),
     ]
 }
 

@@ -64,7 +64,7 @@ pub(super) fn steps(options: &SimulateOptions, outputs: Option<&Outputs>, units:
             options.with_loads,
             if options.with_loads { "--with-loads" } else { "without --with-loads" }.to_owned(),
         ),
-        Step::new("figures", pictures, if pictures { "the response over time" } else { "--no-figures" }.to_owned()),
+        Step::figures(pictures, "the response over time"),
     ]
 }
 

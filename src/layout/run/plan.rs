@@ -32,10 +32,6 @@ pub(in crate::layout) fn steps(
         ),
         Step::new("proof", proof, if proof { budget } else { "--proof 0".to_owned() }),
         Step::new("left out", true, "chosen again without each person".to_owned()),
-        Step::new(
-            "figures",
-            figures,
-            if figures { "places, error against number" } else { "not asked for" }.to_owned(),
-        ),
+        Step::figures(figures, "places, error against number"),
     ]
 }

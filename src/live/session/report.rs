@@ -136,9 +136,10 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
             }
             figures.sources.push(SourceFigures { finger: finger.clone(), gives, stream });
         }
+        let rate_hz = lane.feed.stream.certificate().rate_hz;
         if let Some(decide) = lane.work.decide {
             is_gated |= decide.answers.as_ref().is_some_and(|answers| answers.sensor.answering().is_gated());
-            let of_finger = figures.add(decide, &mut shared.notes, &mut failed);
+            let of_finger = figures.add(decide, rate_hz, &mut shared.notes, &mut failed);
             let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
             doubts.extend(of_finger.into_iter().map(|doubt| format!("{whose}{doubt}")));
         }
@@ -211,8 +212,14 @@ impl SessionFigures {
     }
 
     /// Adds what was made of a finger's rows, and ends its recording. Returns what to doubt of it.
-    fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) -> Vec<String> {
-        let Decide { samples, answers, rows, span_s, are_counts, .. } = decide;
+    fn add(
+        &mut self,
+        decide: Decide,
+        rate_hz: Option<f64>,
+        notes: &mut Vec<String>,
+        failed: &mut Vec<String>,
+    ) -> Vec<String> {
+        let Decide { samples, answers, rows, are_counts, .. } = decide;
         let mut doubts: Vec<String> = are_counts.then(|| COUNTS.to_owned()).into_iter().collect();
         self.rows += rows;
         if let Some(answers) = answers {
@@ -249,7 +256,8 @@ impl SessionFigures {
                 answers.pointer.as_ref().map(PointerOutput::watchdog_s),
             ];
             let shortest_s = watchdogs.into_iter().flatten().fold(f64::INFINITY, f64::min);
-            doubts.extend(span_s.and_then(|span_s| impatient(shortest_s, span_s, sensor.lit)));
+            let step_s = rate_hz.map(|rate_hz| rows as f64 / sensor.lit.max(1) as f64 / rate_hz);
+            doubts.extend(step_s.filter(|_| sensor.lit >= STEPS).and_then(|step_s| impatient(shortest_s, step_s)));
         }
         let Some(mut samples) = samples else { return doubts };
         failed.extend(samples.end_forces().err().map(|why| why.to_string()));
@@ -288,10 +296,9 @@ fn unit(stream: &StreamCertificate) -> Option<String> {
     doubts::time(&[0.0, step_s])
 }
 
-/// That a watchdog lets go between rows, of which so many are answered.
-fn impatient(watchdog_s: f64, [first_s, last_s]: [f64; 2], answered: u64) -> Option<String> {
-    let step_s = (last_s - first_s) / answered.saturating_sub(1) as f64;
-    (answered >= STEPS && watchdog_s < step_s).then(|| {
+/// That a watchdog lets go between answers, which are usually so far apart.
+fn impatient(watchdog_s: f64, step_s: f64) -> Option<String> {
+    (watchdog_s < step_s).then(|| {
         format!(
             "watchdog_s = {watchdog_s} lets go of everything between two answers, which are {step_s:.3} s apart: \
              nothing can be pressed; write several times that"

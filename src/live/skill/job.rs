@@ -178,20 +178,23 @@ fn analysed(
     Ok(Done { trials, drawn, notes, warnings, gated: read.gated, angles_without_gate: read.angles_without_gate })
 }
 
-/// Noise of so much of --touch ends contacts and begins others: of six generated presses twenty were counted where it
-/// had three quarters (white, 100 rows a second), and their time in contact was a third too long.
-const NOISY: f64 = 0.4;
+/// Noise of so much of --touch, of rows at rest, ends contacts and begins others: of six generated presses twenty were
+/// counted where it had three quarters (white, 100 rows a second), and their time in contact was a third too long. Of
+/// the rows below --touch half of it is seen then.
+const NOISY: f64 = 0.45;
 /// Fewer rows say nothing of noise.
 const ROWS: usize = 100;
 
-/// That a force is too noisy for the threshold, by the spread of its rows about their neighbours' mean.
+/// That a force is too noisy for the threshold, by the spread of its rows at rest about their neighbours' mean.
 fn noisy(force_n: &[f64], touch_n: f64) -> Option<String> {
+    let at_rest = |three: &&[f64]| three.iter().all(|force_n| force_n.abs() < touch_n);
+    let bends = force_n.windows(3).filter(at_rest).map(|three| (three[0] - 2.0 * three[1] + three[2]).abs());
+    let count = bends.clone().count();
     // Of independent rows, that has six times the variance of one.
-    let bends = force_n.windows(3).map(|three| (three[0] - 2.0 * three[1] + three[2]).abs());
-    let sd_n = SD_OF_MAD * median_of(bends.filter(|bend| bend.is_finite()))? / 6f64.sqrt();
-    (force_n.len() >= ROWS && sd_n > NOISY * touch_n).then(|| {
+    let sd_n = SD_OF_MAD * median_of(bends)? / 6f64.sqrt();
+    (count >= ROWS && sd_n > NOISY * touch_n).then(|| {
         format!(
-            "the force scatters by {sd_n:.2} N (SD) from row to row, and --touch is {touch_n} N: contacts are made of \
+            "the force scatters at rest by {sd_n:.2} N (SD) or more, and --touch is {touch_n} N: contacts are made of \
              noise, and broken by it; choose a higher --touch and --release, or filter the force"
         )
     })

@@ -6,8 +6,10 @@ use lunula_live::switch::{Contact, Fate, Lag, Match, Trace, any_contact};
 use crate::median::median_of;
 
 /// By how much values follow contact at most, and come before it, seconds, and how much likeness a shift has to win
-/// (assumed: `Lag` says what phantoms give, 0.24 s at most; blood takes 0.1 to 0.3 s, 4.3).
+/// (assumed: `Lag` says what phantoms give; blood takes 0.1 to 0.3 s, 4.3). Values that are less like contact than the
+/// second are those of a model that is slow itself, as one of spirals, and say nothing of clocks.
 const LATE_S: f64 = 0.27;
+const LIKE: f64 = 0.9;
 const EARLY_S: f64 = 0.1;
 const GAIN: f64 = 0.02;
 
@@ -15,7 +17,7 @@ const GAIN: f64 = 0.02;
 pub(super) fn on_another_clock(trace: &Trace) -> Option<String> {
     let Lag { by_s, shifted, recorded } = Lag::of(trace)?;
     let [side, than] = match by_s {
-        late if late > LATE_S => ["after", "a nail takes 0.1 to 0.3 s"],
+        late if late > LATE_S && shifted > LIKE => ["after", "a nail takes 0.1 to 0.3 s"],
         early if early < -EARLY_S - 1e-9 => ["before", "no finger does"],
         _ => return None,
     };
@@ -86,7 +88,7 @@ fn closed(trace: &Trace, found: &[Match]) -> Option<String> {
     (again >= PRESSES && length_s(longest) >= LONG * usual_s).then(|| {
         format!(
             "contact lasts from {:.1} to {:.1} s, {usual_s:.1} s in the median, and the finger presses {} times \
-             within: does the contact switch stick? Leave contact empty there",
+             within: does what measures contact stick, or does the finger stay on? Where it sticks, leave contact empty",
             longest.start_s,
             longest.end_s,
             again + 1
@@ -109,7 +111,7 @@ fn open(trace: &Trace, found: &[Match]) -> Option<String> {
     (contacts.len() >= FEWEST && presses >= PRESSES && is_as_often).then(|| {
         format!(
             "there is no contact from {from_s:.1} to {to_s:.1} s, and the finger presses {presses} times there: did \
-             the contact switch work? Leave contact empty there"
+             what measures contact work? Where it did not, leave contact empty"
         )
     })
 }

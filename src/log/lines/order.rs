@@ -12,7 +12,7 @@ use std::num::NonZeroUsize;
 use crate::log::formats::raw::Raw;
 use crate::log::lines::stamps::DAY_S;
 use crate::log::{Channel, Log, LogError};
-use crate::median::median_of;
+use crate::median::{SD_OF_MAD, median_of};
 
 /// The longest run of late rows that counts as a small disorder.
 const LATE_ROWS: usize = 16;
@@ -20,8 +20,10 @@ const LATE_ROWS: usize = 16;
 /// A step of more than so many usual ones is a gap.
 const GAP_STEPS: f64 = 5.0;
 
-/// Rows that stay behind by so many steps were not late.
+/// Rows that stay behind by so many steps, and standard errors of both sides (assumed: where stamps jitter, every other
+/// row is late), were not late.
 const STAYS: f64 = 0.75;
+const STAYS_SES: f64 = 7.0;
 
 /// Orders the rows by time.
 pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Result<Log, LogError> {
@@ -152,15 +154,42 @@ fn is_small(time_s: &[f64], k: usize, run: usize, latest: f64, step_s: f64) -> b
 fn stays_behind(time_s: &[f64], k: usize, run: usize, earliest: f64, step_s: f64) -> bool {
     // Those before the hole that the late rows leave.
     let hole = (k.saturating_sub(2 * LATE_ROWS)..k).find(|&row| time_s[row] >= earliest).unwrap_or(k);
-    let sides = [hole.saturating_sub(LATE_ROWS)..hole, k + run..(k + run + LATE_ROWS).min(time_s.len())];
-    let offsets = sides.map(|rows| {
-        let is_even = |pair: &[f64]| (0.5 * step_s..=1.5 * step_s).contains(&(pair[1] - pair[0]));
-        let steps = time_s[rows.clone()].windows(2);
-        let known = steps.len() >= LATE_ROWS / 2 && 5 * steps.clone().filter(|p| is_even(p)).count() >= 4 * steps.len();
-        median_of(rows.map(|row| time_s[row] - row as f64 * step_s)).filter(|_| known)
-    });
-    let [Some(before), Some(after)] = offsets else { return false };
-    after - before < -STAYS * step_s
+    let before = time_s[hole.saturating_sub(LATE_ROWS)..hole].iter().rev();
+    let after = time_s[k + run..(k + run + LATE_ROWS).min(time_s.len())].iter();
+    let sides = [Side::of(before.map(|t| -t), step_s), Side::of(after.copied(), step_s)];
+    let [Some(before), Some(after)] = sides else { return false };
+    // Between the two lie the rows that are late and those that they are behind of.
+    let between = (k + run - hole + 1) as f64 * 0.5 * (before.step_s + after.step_s);
+    let behind_s = between - (after.from_s + before.from_s);
+    behind_s > (STAYS * step_s).max(STAYS_SES * before.se_s.hypot(after.se_s))
+}
+
+/// Rows on one side of a hole, from it on: where their line begins, and how surely.
+struct Side {
+    from_s: f64,
+    se_s: f64,
+    step_s: f64,
+}
+
+impl Side {
+    /// Of stamps that ascend; none of few, or of such as do not come evenly.
+    fn of(time_s: impl Iterator<Item = f64>, usual_s: f64) -> Option<Self> {
+        let mut time_s: Vec<f64> = time_s.collect();
+        time_s.dedup();
+        let is_even = |step_s: &f64| (0.5 * usual_s..=1.5 * usual_s).contains(step_s);
+        let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let even: Vec<f64> = steps.iter().copied().filter(is_even).collect();
+        if steps.len() < LATE_ROWS / 2 || 5 * even.len() < 4 * steps.len() {
+            return None;
+        }
+        let step_s = even.iter().sum::<f64>() / even.len() as f64;
+        let on_line = |(row, t): (usize, &f64)| t - row as f64 * step_s;
+        let from_s = median_of(time_s.iter().enumerate().map(on_line))?;
+        let off_s = median_of(time_s.iter().enumerate().map(|row| (on_line(row) - from_s).abs()))?;
+        // The middle of white numbers is known 1.25 times worse than their mean.
+        let se_s = 1.25 * SD_OF_MAD * off_s / (time_s.len() as f64).sqrt();
+        Some(Self { from_s, se_s, step_s })
+    }
 }
 
 /// Sorts rows that are out of order, and notes it.

@@ -57,6 +57,6 @@ pub(in crate::nailvideo) fn steps(
         Step::new("maps", !options.maps.is_empty(), asked(!options.maps.is_empty(), "--maps")),
         Step::new("presses", true, "of all photodiodes, and of both ends of the nail".to_owned()),
         Step::new("pulse", false, "not measured from video".to_owned()),
-        Step::new("figures", figures, if figures { "traces, sheet" } else { "not asked for" }.to_owned()),
+        Step::figures(figures, "traces, sheet"),
     ]
 }

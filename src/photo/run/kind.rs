@@ -185,7 +185,7 @@ impl Job for MapsJob {
                 several,
                 if several { "over subjects, by pose".into() } else { "it needs two subjects in a pose".into() },
             ),
-            Step::new("figures", figures, if figures { "by pose, and sheets".into() } else { "not requested".into() }),
+            Step::figures(figures, "by pose, and sheets"),
         ])
     }
 

@@ -6,12 +6,11 @@ use std::path::Path;
 
 use crate::input;
 use crate::log::{Columns, LogHeader};
+use crate::photo::MASKS;
 use crate::table::{Table, column_names};
 
 /// How deep is looked.
 const DEEPEST: usize = 6;
-/// What folders of masks, and the ends of masks' names, are called.
-const MASKS: [&str; 4] = ["mask", "masks", "label", "labels"];
 
 /// What was found, by sort; paths are relative to the folder, with `/`, sorted.
 #[derive(Debug, Default)]

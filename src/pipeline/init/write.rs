@@ -282,7 +282,10 @@ impl Draft<'_> {
         }
         if !chosen.is_empty() {
             let chosen = chosen.join(", ");
-            let _ = writeln!(self.inputs, "# Only {what}: the pattern fits other files too.\nwhere = {{ {chosen} }}");
+            let _ = writeln!(
+                self.inputs,
+                "# Only {what}: the pattern fits other files too; add new ones here.\nwhere = {{ {chosen} }}"
+            );
         }
         if !strays.is_empty() {
             self.notes.push(format!("{what}: the pattern fits {} more files, which are none; move them", strays.len()));

@@ -3,10 +3,6 @@
 
 /// A text with keys in place of options.
 pub(in crate::pipeline) fn in_keys(text: &str) -> String {
-    if text == "--no-figures" {
-        // Pictures are a part of a result there.
-        return "not asked for".to_owned();
-    }
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find("--") {
@@ -70,7 +66,6 @@ mod tests {
             ("say which, as in --columns \"P1=a\"", "say which, as in `columns` \"P1=a\""),
             ("`--by` is", "`by` is"),
             ("/data/a--b.csv: no", "/data/a--b.csv: no"),
-            ("--no-figures", "not asked for"),
             ("a -- b --", "a -- b --"),
         ] {
             assert_eq!(in_keys(said), key);

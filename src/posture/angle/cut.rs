@@ -15,6 +15,8 @@ const LEAP_SDS: f64 = 10.0;
 /// It is so many times what the frames beside it turn by, of which there are so many on each side.
 const TIMES: f64 = 10.0;
 const BESIDE: usize = 4;
+/// A video with more of them shows a finger that is fast for its rate of pictures, or hidden by its own streak.
+const CUTS: usize = 3;
 /// A joint that is lost for so many frames after a leap, as markers are sought, may be compared with where it was.
 const LOST: u64 = 10;
 
@@ -68,7 +70,7 @@ impl Cut {
         frames.sort_unstable();
         // Markers are found again within some frames.
         frames.dedup_by(|frame, before| *frame - *before <= LOST);
-        let first = *frames.first()?;
+        let first = *frames.first().filter(|_| frames.len() <= CUTS)?;
         let most_rad = self.leaps.iter().map(|(_, by_rad)| *by_rad).fold(0.0, f64::max);
         Some(format!(
             "angles leap by up to {:.0} degrees from one frame to the next, and are steady before and after, in {} \

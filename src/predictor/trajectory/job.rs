@@ -43,11 +43,7 @@ pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Ve
             spiral,
             if spiral { "as printed and with the true maximum" } else { "only of the spiral" }.to_owned(),
         ),
-        Step::new(
-            "figures",
-            pictures,
-            if pictures { "of its path, in its cone and over time" } else { "--no-figures" }.to_owned(),
-        ),
+        Step::figures(pictures, "of its path, in its cone and over time"),
     ])
 }
 

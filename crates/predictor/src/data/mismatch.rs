@@ -37,6 +37,8 @@ const RIVAL: f64 = 1.5;
 const GAIN: f64 = 1.7;
 /// Axes of a transducer that is mounted again are turned by less, degrees (assumed).
 const TURN_DEG: f64 = 15.0;
+/// Forces that are turned beside a model change alike: their variances are no more different (assumed).
+const COMPARABLE: f64 = 0.2;
 /// How targets that are forces, newtons along an axis each, are called at their end.
 const FORCE: &str = "_N";
 /// A model of all parts is much worse where it leaves this many times the error that one of each part leaves, and so
@@ -225,6 +227,11 @@ pub fn beside_model(
     for pair in pairs_of(&forces(answered.targets())) {
         for ((_, one, recorded), tried) in doubted.iter().zip(&mut tried) {
             let [[a, of_a], [b, of_b]] = pair.map(|k| both(one, values, [k, k]).map(centred));
+            // Where one hardly changes, any crosstalk of the other looks like a turn.
+            let spread = [a.dot(&a), b.dot(&b)];
+            if spread[0].min(spread[1]) < COMPARABLE * spread[0].max(spread[1]) {
+                continue;
+            }
             let (sin, cos) = (of_a.dot(&b) - of_b.dot(&a), of_a.dot(&a) + of_b.dot(&b));
             let by = sin.atan2(cos);
             let difference = Difference::Turned { columns: pair.map(|k| inputs + k), by_deg: by.to_degrees() };
