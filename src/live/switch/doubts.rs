@@ -88,7 +88,7 @@ fn closed(trace: &Trace, found: &[Match]) -> Option<String> {
     (again >= PRESSES && length_s(longest) >= LONG * usual_s).then(|| {
         format!(
             "contact lasts from {:.1} to {:.1} s, {usual_s:.1} s in the median, and the finger presses {} times \
-             within: does what measures contact stick, or does the finger stay on? Where it sticks, leave contact empty",
+             within: does what measures contact stick, or does the finger stay on? Where it sticks, leave it empty",
             longest.start_s,
             longest.end_s,
             again + 1
