@@ -3,8 +3,8 @@
 //! In: a [`Trace`]. Out: by how much contact has to be shifted to be likest to the values, a Pearson correlation of the
 //! rows around contacts. Blood takes 0.1 to 0.3 s (4.3): values that follow later, or that come before contact, are on
 //! another clock. *Measured* on three phantom recordings of contacts: -0.02 to 0.02 s with models of contact and of
-//! force that have lags, 0.06 to 0.12 s with those without, at correlations of 0.9 and more; 0.24 s with forces learnt
-//! of spirals alone, and up to 0.64 s on other phantoms, at 0.75 to 0.85. With contact 0.4 s ahead so much more.
+//! force that have lags, 0.06 to 0.12 s with those without, at correlations of 0.88 to 0.97; 0.24 s with forces learnt
+//! of spirals alone, and up to 0.64 s on other phantoms, at 0.6 to 0.87. With contact 0.4 s ahead so much more.
 
 use super::evaluate::Trace;
 
