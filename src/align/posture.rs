@@ -170,6 +170,12 @@ const LEAP_TIMES: f64 = 8.0;
 fn filled_in(joint: &str, angles_deg: &[f64], sds_deg: &[f64]) -> Option<String> {
     let is_measured = |row: &usize| angles_deg[*row].is_finite() && sds_deg[*row] > 0.0;
     let known: Vec<usize> = (0..angles_deg.len()).filter(is_measured).collect();
+    // Where digits are fewer than the error allows, a finger that rests has one angle.
+    let digit_deg = 10f64.powf((median_of(known.iter().map(|&row| sds_deg[row]))? / 3.0).log10().floor());
+    let is_coarse = |row: &usize| (angles_deg[*row] / digit_deg - (angles_deg[*row] / digit_deg).round()).abs() < 1e-6;
+    if known.iter().all(is_coarse) {
+        return None;
+    }
     let runs: Vec<&[usize]> = known.chunk_by(|a, b| angles_deg[*a] == angles_deg[*b]).collect();
     let by_deg = |pair: &[&[usize]]| angles_deg[pair[1][0]] - angles_deg[pair[0][0]];
     let usual_deg = median_of(runs.windows(2).map(|pair| by_deg(pair).abs()))?;
@@ -278,6 +284,7 @@ mod tests {
         // Whole degrees, a rest, which may be smoothed, or is known exactly, one glitch.
         assert_eq!(said(0.2, &|k, angle| if k > 62 { 75.2 } else { angle }), "");
         assert_eq!(said(0.2, &|_, angle| angle.round()), "");
+        assert_eq!(said(0.2, &|k, _| if k % 100 < 50 { 10.0 } else { 41.0 }), "");
         assert_eq!(said(0.0, &|k, angle| if (100..190).contains(&k) { 0.0 } else { angle }), "");
         assert_eq!(said(0.2, &|k, angle| if k == 70 { 99.0 } else { angle }), "");
     }

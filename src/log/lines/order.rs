@@ -12,7 +12,7 @@ use std::num::NonZeroUsize;
 use crate::log::formats::raw::Raw;
 use crate::log::lines::stamps::DAY_S;
 use crate::log::{Channel, Log, LogError};
-use crate::median::{SD_OF_MAD, median_of};
+use crate::median::median_of;
 
 /// The longest run of late rows that counts as a small disorder.
 const LATE_ROWS: usize = 16;
@@ -20,10 +20,10 @@ const LATE_ROWS: usize = 16;
 /// A step of more than so many usual ones is a gap.
 const GAP_STEPS: f64 = 5.0;
 
-/// Rows that stay behind by so many steps, and standard errors of both sides (assumed: where stamps jitter, every other
-/// row is late), were not late.
+/// Rows that stay behind by so many steps, and standard errors of both sides (assumed: where stamps jitter, many a row
+/// is late, and the latest of hundreds is looked at), were not late.
 const STAYS: f64 = 0.75;
-const STAYS_SES: f64 = 7.0;
+const STAYS_SES: f64 = 12.0;
 
 /// Orders the rows by time.
 pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Result<Log, LogError> {
@@ -172,22 +172,21 @@ struct Side {
 }
 
 impl Side {
-    /// Of stamps that ascend; none of few, or of such as do not come evenly.
+    /// Of stamps that ascend; none of few, or of such as repeat or do not come evenly.
     fn of(time_s: impl Iterator<Item = f64>, usual_s: f64) -> Option<Self> {
-        let mut time_s: Vec<f64> = time_s.collect();
-        time_s.dedup();
+        let time_s: Vec<f64> = time_s.collect();
         let is_even = |step_s: &f64| (0.5 * usual_s..=1.5 * usual_s).contains(step_s);
         let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let even: Vec<f64> = steps.iter().copied().filter(is_even).collect();
-        if steps.len() < LATE_ROWS / 2 || 5 * even.len() < 4 * steps.len() {
+        if steps.len() < LATE_ROWS / 2 || 5 * even.len() < 4 * steps.len() || steps.contains(&0.0) {
             return None;
         }
         let step_s = even.iter().sum::<f64>() / even.len() as f64;
         let on_line = |(row, t): (usize, &f64)| t - row as f64 * step_s;
         let from_s = median_of(time_s.iter().enumerate().map(on_line))?;
-        let off_s = median_of(time_s.iter().enumerate().map(|row| (on_line(row) - from_s).abs()))?;
+        let off_s2 = time_s.iter().enumerate().map(|row| (on_line(row) - from_s).powi(2)).sum::<f64>();
         // The middle of white numbers is known 1.25 times worse than their mean.
-        let se_s = 1.25 * SD_OF_MAD * off_s / (time_s.len() as f64).sqrt();
+        let se_s = 1.25 * off_s2.sqrt() / time_s.len() as f64;
         Some(Self { from_s, se_s, step_s })
     }
 }
