@@ -136,10 +136,10 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
             }
             figures.sources.push(SourceFigures { finger: finger.clone(), gives, stream });
         }
-        let rate_hz = lane.feed.stream.certificate().rate_hz;
+        let period_s = lane.feed.stream.period_s();
         if let Some(decide) = lane.work.decide {
             is_gated |= decide.answers.as_ref().is_some_and(|answers| answers.sensor.answering().is_gated());
-            let of_finger = figures.add(decide, rate_hz, &mut shared.notes, &mut failed);
+            let of_finger = figures.add(decide, period_s, &mut shared.notes, &mut failed);
             let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
             doubts.extend(of_finger.into_iter().map(|doubt| format!("{whose}{doubt}")));
         }
@@ -215,7 +215,7 @@ impl SessionFigures {
     fn add(
         &mut self,
         decide: Decide,
-        rate_hz: Option<f64>,
+        period_s: Option<f64>,
         notes: &mut Vec<String>,
         failed: &mut Vec<String>,
     ) -> Vec<String> {
@@ -256,7 +256,7 @@ impl SessionFigures {
                 answers.pointer.as_ref().map(PointerOutput::watchdog_s),
             ];
             let shortest_s = watchdogs.into_iter().flatten().fold(f64::INFINITY, f64::min);
-            let step_s = rate_hz.map(|rate_hz| rows as f64 / sensor.lit.max(1) as f64 / rate_hz);
+            let step_s = period_s.map(|period_s| period_s * rows as f64 / sensor.lit.max(1) as f64);
             doubts.extend(step_s.filter(|_| sensor.lit >= STEPS).and_then(|step_s| impatient(shortest_s, step_s)));
         }
         let Some(mut samples) = samples else { return doubts };

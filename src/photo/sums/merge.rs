@@ -41,6 +41,6 @@ pub fn merge_plan(parts: &[PathBuf]) -> Vec<Step> {
     vec![
         Step::new("photographs", false, "not read again, their sums are joined".to_owned()),
         Step::new("sums joined", true, format!("of {} folders", parts.len())),
-        Step::new("figures", true, "by pose, and sheets".to_owned()),
+        Step::figures(true, "by pose, and sheets"),
     ]
 }

@@ -268,11 +268,11 @@ impl Draft<'_> {
         let Ok(pattern) = Pattern::parse(pattern) else { return };
         let of = |found: &Match| names.iter().map(|name| found.keys.get(name).unwrap_or_default().to_owned()).collect();
         let mut strays: Vec<Vec<String>> = pattern.find(&self.all).matches.iter().map(of).collect();
-        strays.retain(|stray| !values.contains(stray));
-        let of_key = |at: usize| values.iter().map(|one| one[at].as_str()).collect::<BTreeSet<&str>>();
+        let meant: BTreeSet<&Vec<String>> = values.iter().collect();
+        strays.retain(|stray| !meant.contains(stray));
         let mut chosen = Vec::new();
         for (at, name) in names.iter().enumerate() {
-            let known = of_key(at);
+            let known: BTreeSet<&str> = values.iter().map(|one| one[at].as_str()).collect();
             let before = strays.len();
             strays.retain(|stray| known.contains(stray[at].as_str()));
             if strays.len() < before {

@@ -29,6 +29,11 @@ impl InputItems {
     pub(in crate::pipeline) fn of(&self, column: Option<usize>) -> Relation {
         self.relations.get(column.unwrap_or(0)).cloned().unwrap_or_default()
     }
+
+    /// Those of each column that stages name, or the files'.
+    pub(in crate::pipeline) fn relations(&self) -> &[Relation] {
+        &self.relations
+    }
 }
 
 /// Looks at an input.

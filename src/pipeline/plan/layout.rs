@@ -55,7 +55,9 @@ pub(super) fn lay_out<'a>(spec: &Spec, world: &World<'a>) -> Result<Layout<'a>, 
     }
     let before = faults.len();
     clashes(spec, &layout, &mut faults);
-    if let (Some(clash), [empty, ..]) = (faults.get_mut(before), &empty_keys(spec, &inputs)[..]) {
+    if let Some(clash) = faults.get_mut(before)
+        && let Some(empty) = empty_keys(spec, &inputs).first()
+    {
         let _ = write!(clash.what, ". {empty}");
     }
     if faults.is_empty() {

@@ -45,9 +45,9 @@ pub(super) fn slips(spec: &Spec, inputs: &[Option<InputItems>], taken: &BTreeSet
     }
     for (input, items) in spec.inputs.iter().zip(inputs) {
         let (InputSource::Files(pattern), Some(items)) = (&input.source, items) else { continue };
-        let found = items.of(None).items;
+        let found = || items.relations().iter().flat_map(|relation| &relation.items);
         for key in items.columns.iter().filter(|key| each.contains(key.as_str())) {
-            let values = found.iter().filter_map(|item| item.keys.get(key));
+            let values = found().filter_map(|item| item.keys.get(key));
             warnings.extend(twins(&format!("`{pattern}`: the values of `{key}`"), values));
         }
     }
@@ -59,10 +59,12 @@ pub(super) fn slips(spec: &Spec, inputs: &[Option<InputItems>], taken: &BTreeSet
 
 /// The keys that stages are done for each of.
 fn each(spec: &Spec) -> BTreeSet<&str> {
-    let of_stage = |stage| match stage {
-        &StageSpec { each: Some((ref keys, _)), .. } => keys.iter().map(String::as_str).collect(),
-        stage => stage.prepared.each().to_vec(),
-    };
+    fn of_stage(stage: &StageSpec) -> Vec<&str> {
+        match &stage.each {
+            Some((keys, _)) => keys.iter().map(String::as_str).collect(),
+            None => stage.prepared.each().to_vec(),
+        }
+    }
     spec.stages.iter().flat_map(of_stage).collect()
 }
 
@@ -72,7 +74,7 @@ pub(super) fn empty_keys(spec: &Spec, inputs: &[Option<InputItems>]) -> Vec<Stri
     let each = each(spec);
     for (input, items) in spec.inputs.iter().zip(inputs) {
         let (InputSource::Table(_), Some(items)) = (&input.source, items) else { continue };
-        for relation in (0..input.columns.len()).map(|column| items.of(Some(column))) {
+        for relation in items.relations() {
             for key in relation.names.iter().filter(|key| each.contains(key.as_str()) || *key == SUBJECT) {
                 let without = relation.items.iter().filter(|item| item.keys.get(key).is_none());
                 let without: Vec<&str> = without.map(|item| item.place.as_str()).collect();

@@ -275,11 +275,16 @@ fn one_recording_under_the_names_of_two_subjects_is_warned_of() {
     assert_eq!(plan("markers.toml", "1"), [""; 0]);
 }
 
-/// What the plan warns of where the sessions are in a table of these rows.
-fn warned(rows: &[&str], pipeline: &str) -> Vec<String> {
+/// The sessions are in a table of these rows.
+fn bench_of(rows: &[&str]) -> Bench {
     let table = format!("subject,session,kind,video,log\n{}\n", rows.join("\n"));
     let others = files().into_iter().filter(|(name, _)| *name != "sessions.csv");
-    Bench::new(&others.chain([("sessions.csv", table.as_str())]).collect::<Vec<_>>()).plan(pipeline).warnings
+    Bench::new(&others.chain([("sessions.csv", table.as_str())]).collect::<Vec<_>>())
+}
+
+/// What the plan warns of then.
+fn warned(rows: &[&str], pipeline: &str) -> Vec<String> {
+    bench_of(rows).plan(pipeline).warnings
 }
 
 /// A right value, one in the wrong case, one with letters exchanged, one of another kind.
@@ -329,20 +334,13 @@ fn values_that_a_stage_is_done_for_each_of_and_that_are_all_but_the_same_are_war
 fn a_row_that_does_not_say_whose_it_is_is_in_no_ones_model() {
     let text = "[inputs.all]\ntable = \"sessions.csv\"\nwhere = { kind = \"touch\" }\n[stage.model]\njob = \"train\"\n\
                 data = \"all.log\"\neach = [\"subject\"]\n";
-    let rows = ["S01,1,touch,,l/S01.csv", "S02,1,touch,,l/S02.csv", ",1,touch,,l/S03.csv"];
-    let table = format!("subject,session,kind,video,log\n{}\n", rows.join("\n"));
-    let others = files().into_iter().filter(|(name, _)| *name != "sessions.csv");
-    let bench = Bench::new(&others.chain([("sessions.csv", table.as_str())]).collect::<Vec<_>>());
-    let plan = bench.plan(text);
+    let plan = bench_of(&["S01,1,touch,,l/S01.csv", "S02,1,touch,,l/S02.csv", ",1,touch,,l/S03.csv"]).plan(text);
     let inputs: Vec<(&str, usize)> = plan.tasks.iter().map(|task| (task.id.as_str(), task.inputs.len())).collect();
     assert_eq!(inputs, [("model/S01", 1), ("model/S02", 1)]);
     let empty = "sessions.csv, line 4: `subject` is empty: what is there is in no group of `subject`";
     assert!(plan.warnings.len() == 1 && plan.warnings[0].starts_with(empty), "{:?}", plan.warnings);
     // Joined, it goes with two sessions that others have: the refusal says why.
-    let rows = ["S01,1,bending,v/S01.mp4,l/S01.csv", ",1,bending,v/S02.mp4,l/S02.csv"];
-    let table = format!("subject,session,kind,video,log\n{}\n", rows.join("\n"));
-    let others = files().into_iter().filter(|(name, _)| *name != "sessions.csv");
-    let faults = Bench::new(&others.chain([("sessions.csv", table.as_str())]).collect::<Vec<_>>()).faults(STUDY);
+    let faults = bench_of(&["S01,1,bending,v/S01.mp4,l/S01.csv", ",1,bending,v/S02.mp4,l/S02.csv"]).faults(STUDY);
     assert!(
         faults[0].contains("would both be written to") && faults[0].contains("line 3: `subject` is empty"),
         "{faults:?}"

@@ -34,7 +34,7 @@ pub(super) struct Cut {
 struct Course {
     /// The last known angle and its standard error, and of which frame.
     last: Option<([f64; 2], u64)>,
-    /// Changes from known frame to known frame, radians, each with its frame.
+    /// Changes from known frame to known frame, radians, each with its frame, and whether it is a leap.
     changes: VecDeque<(u64, f64, bool)>,
 }
 
