@@ -109,10 +109,11 @@ impl Job for PhotosOptions {
         let pixels = f64::from(size_px.0) * f64::from(size_px.1);
         let at_once = photos.min(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
         let sums = 20 * (self.normalization.size * self.normalization.size) as u64 * photos as u64;
+        let searched = if self.check_outlines { photos } else { detected };
         let with_net = self.check_outlines || detected > 0 && self.outlines.detect.detector == Detector::Net;
         let net = if with_net { NET_BYTES + at_once * NET_BYTES_A_THREAD } else { 0 };
         let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST + net;
-        let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + detected as f64 * DETECT_S;
+        let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + searched as f64 * DETECT_S;
         (memory, seconds)
     }
 

@@ -86,7 +86,7 @@ pub fn run(
     let clock_doubt = clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()?.doubt.clone());
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
-    warnings.extend(layout.warnings.iter().cloned());
+    warnings.extend(layout.warnings.iter().chain(&survey.doubts).cloned());
     warnings.extend(angles.doubts());
     warnings.extend(unsmoothed);
     warnings.extend(clock_doubt);
@@ -269,8 +269,14 @@ mod tests {
         let text = "[markers]\na = '#2b4b10'\nb = '#2b4b10'\nc = '#2b4b10'\n";
         let layout = Layout::parse(text, Path::new("m.toml")).expect("a sound marker file");
         let siting = Siting { dx_px: 0.0, dy_px: 0.0 };
-        let survey =
-            Survey { starts: vec![None; 3], lengths_px: Vec::new(), siting, frames: 296, unseen: vec![0, 1, 2] };
+        let survey = Survey {
+            starts: vec![None; 3],
+            lengths_px: Vec::new(),
+            siting,
+            frames: 296,
+            unseen: vec![0, 1, 2],
+            doubts: Vec::new(),
+        };
         let centre =
             Centre { at_px: [9.0; 2], covariance_px2: [0.01, 0.0, 0.01], lasting_px2: [0.0; 3], radius_px: 5.0 };
         let mut markers = vec![MarkerSums::default(); 3];

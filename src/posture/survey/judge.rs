@@ -1,6 +1,7 @@
 //! Which naming the frames looked at speak for, and where they leave a doubt.
 
-use super::Surveyor;
+use super::{LEAST_FRAMES, Surveyor};
+use crate::posture::layout::Segment;
 use crate::posture::survey::find::Paint;
 use crate::posture::survey::naming::{MARGIN, Naming, Point, Scene, colour_cost, rigid_cost};
 
@@ -105,6 +106,45 @@ impl Surveyor<'_> {
         (0..unsure.len()).filter(|&place| unsure[place]).collect()
     }
 
+    /// What to say of segments between whose markers a spot lies that has no name: where the colours of two markers are
+    /// exchanged in the marker file, one of a segment is passed over.
+    pub(super) fn passed_over(&self, best: &Hypothesis) -> Vec<String> {
+        let spot_of = |marker: usize| {
+            let place = self.chain.links.iter().position(|link| link.marker == marker);
+            best.naming[place.filter(|&place| self.is_needed(place))?]
+        };
+        let stranger = |[a, b]: [usize; 2]| {
+            let nameless = (0..self.spots.all.len()).filter(|spot| !best.naming.contains(&Some(*spot)));
+            nameless
+                .map(|spot| {
+                    let at = |spot: usize, frame| self.spots.all[spot].at(frame).map(|point| point.at_px);
+                    let lies = |&&frame: &&u64| {
+                        let points = at(a, frame).zip(at(b, frame)).zip(at(spot, frame));
+                        points.is_some_and(|((a, b), between)| is_between(a, b, between))
+                    };
+                    (spot, self.looked.iter().filter(lies).count())
+                })
+                .max_by_key(|&(_, frames)| frames)
+                .filter(|&(_, frames)| frames >= LEAST_FRAMES && 2 * frames > self.looked.len())
+        };
+        let said = |segment: &Segment| {
+            let [a, b] = segment.markers;
+            let (spot, frames) = stranger([spot_of(a)?, spot_of(b)?])?;
+            let name = |marker: usize| self.layout.markers[marker].name.as_str();
+            let alike = (0..self.paint_of.len()).find(|&marker| self.spots.all[spot].paints[self.paint_of[marker]])?;
+            Some(format!(
+                "between {} and {} of segment {} lies a mark of the colour of {} that has no name, in {frames} of {} \
+                 frames: are the colours of two markers exchanged under [markers]?",
+                name(a),
+                name(b),
+                segment.name,
+                name(alike),
+                self.looked.len()
+            ))
+        };
+        self.layout.segments.iter().filter_map(said).collect()
+    }
+
     /// Whether two namings can't both be right in a place. A spot that was lost and came back as another one is no
     /// contradiction.
     pub(super) fn differ(&self, best: &Hypothesis, other: &Hypothesis, place: usize) -> bool {
@@ -120,6 +160,20 @@ impl Surveyor<'_> {
             (None, _) => false,
         }
     }
+}
+
+/// A spot lies between two others where it is at least the first share of their distance from either, along it, and at
+/// most the second beside it (assumed: blots fall into parts, which lie at their ends; what is passed over at a joint
+/// bends away).
+const FROM_EITHER: f64 = 0.15;
+const BESIDE: f64 = 0.4;
+
+fn is_between(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> bool {
+    let [way, to_point] = [b, point].map(|end| [end[0] - a[0], end[1] - a[1]]);
+    let square = way[0] * way[0] + way[1] * way[1];
+    let along = (way[0] * to_point[0] + way[1] * to_point[1]) / square;
+    let beside = (way[0] * to_point[1] - way[1] * to_point[0]) / square;
+    (FROM_EITHER..=1.0 - FROM_EITHER).contains(&along) && beside.abs() <= BESIDE
 }
 
 /// Takes a frame into account.

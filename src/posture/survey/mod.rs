@@ -67,6 +67,8 @@ pub(crate) struct Survey {
     pub(crate) frames: usize,
     /// Needed markers that were not seen in them.
     pub(crate) unseen: Vec<usize>,
+    /// What speaks against the names.
+    pub(crate) doubts: Vec<String>,
 }
 
 /// Why markers have no names.
@@ -289,6 +291,7 @@ impl<'a> Surveyor<'a> {
         let unseen = (0..starts.len()).filter(|&marker| self.needed[marker] && starts[marker].is_none()).collect();
         Ok(Survey {
             lengths_px: self.lengths(best),
+            doubts: self.passed_over(best),
             starts,
             siting: self.spots.siting(self.info.chroma_site.map(|(dx_px, dy_px)| Siting { dx_px, dy_px })),
             frames: self.frames,
