@@ -101,6 +101,7 @@ impl Said {
             }
             let value = match one.get_action() {
                 ArgAction::SetTrue => matches.get_flag(id).then_some(true)?.into(),
+                ArgAction::SetFalse => (!matches.get_flag(id)).then_some(true)?.into(),
                 action => {
                     let words = matches.get_raw(id)?.map(|word| word.to_string_lossy().into_owned());
                     let mut words: Vec<String> = words.collect();
@@ -211,7 +212,7 @@ pub fn read<R: Args>(table: &Table, of: &str) -> Result<Given<R>, OptionFault> {
             let choice = if known.is_empty() { "it has none".to_owned() } else { instead(key, &known) };
             return Err(fault(format!("`{key}` is not an option of {of}; {choice}")));
         };
-        let flag = matches!(option.get_action(), ArgAction::SetTrue);
+        let flag = matches!(option.get_action(), ArgAction::SetTrue | ArgAction::SetFalse);
         let again = matches!(option.get_action(), ArgAction::Append);
         match value {
             Value::Boolean(yes) if flag => words.extend(yes.then(|| format!("--{long}"))),

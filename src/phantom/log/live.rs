@@ -67,7 +67,7 @@ impl LiveLog {
         if !faults.0.is_empty() {
             return Err(faults);
         }
-        let samples = Samples::prompted_by(options, [1.0; CHANNELS], endless, prompting);
+        let samples = Samples::new(options, [1.0; CHANNELS], endless, prompting);
         Ok(Self { options: options.clone(), columns: columns(options), samples })
     }
 

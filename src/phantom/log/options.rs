@@ -1,13 +1,16 @@
 //! What log is wanted.
 
+use clap::{ArgAction, Args};
 use serde::Serialize;
 
+use crate::job;
 use crate::nail::Positions;
 use crate::phantom::motion::contacts::Contacts;
 use crate::phantom::motion::force::ForceTrajectory;
 use crate::phantom::motion::trajectory::Trajectory;
-use crate::phantom::screen::{Clock, Jump};
-use crate::phantom::sensor::{CHANNELS, DisturbanceSizes, Dynamics};
+use crate::phantom::request::{parse_gap, parse_percent, parse_set_clock};
+use crate::phantom::screen::Jump;
+use crate::phantom::sensor::{Ambient, CHANNELS, DisturbanceSizes, Disturbances, Dynamics, Wander};
 
 /// How rows say their time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -31,86 +34,122 @@ pub enum SensorModel {
     Nail,
 }
 
-/// A log to be made.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// A log to be made: what the command line gives as it is, and what [`LogRequest`](crate::phantom::request::LogRequest)
+/// makes of the rest.
+#[derive(Debug, Clone, PartialEq, Args, Serialize)]
 pub struct LogOptions {
     /// Everything random follows from it, but for the person and the session.
+    #[arg(skip = 1_u64)]
     pub seed: u64,
     /// Whose finger it is.
+    #[arg(skip = 1_u32)]
     pub subject: u32,
     /// How the sensor sits that day.
+    #[arg(skip = 1_u32)]
     pub session: u32,
     /// What the volts come from.
+    #[arg(skip = SensorModel::Formulae)]
     #[serde(skip_serializing_if = "is_formulae")]
     pub sensor: SensorModel,
     /// Where the photodiodes are, of [`SensorModel::Nail`]; none: [`Positions::thesis`].
+    #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub positions: Option<Positions>,
     /// How the joints move.
+    #[arg(skip = Trajectory::Eq27 { hz: 0.1 })]
     pub trajectory: Trajectory,
     /// How the fingertip presses.
+    #[arg(skip = ForceTrajectory::None)]
     pub force: ForceTrajectory,
     /// Until then the finger bends and touches nothing, from then on it presses, straight, the force's own time 0 being
     /// there, seconds; none: it does both all along.
+    #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touch_from_s: Option<f64>,
     /// How well the finger follows: the standard deviation of its error as a share; 0: it does exactly what is
     /// prompted, without a lag.
+    #[arg(skip)]
     #[serde(skip_serializing_if = "is_zero")]
     pub follow: f64,
     /// How far off straight it touches or rests at most, radians.
+    #[arg(skip)]
     #[serde(skip_serializing_if = "is_zero")]
     pub posture_shift_rad: f64,
     /// From the video's first frame on.
+    #[arg(skip = 10.0)]
     pub seconds: f64,
-    /// How long the log goes on before the video begins; less than 0: it begins later.
+    /// The log begins so long before the video
+    #[arg(long = "lead", value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
     pub lead_s: f64,
-    /// How long it goes on after the video ends.
+    /// It goes on so long after the video
+    #[arg(long = "trail", value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
     pub trail_s: f64,
-    /// Samples a second of the log's clock, lit and unlit ones together.
+    /// Samples a second, lit and unlit ones together
+    #[arg(long = "rate", value_name = "HZ", default_value_t = 25.0)]
     pub rate_hz: f64,
-    /// What the log's clock says at the video's time 0, seconds.
+    /// What the log's clock says at the video's first frame; as the video's --clock-offset
+    #[arg(long = "clock-offset", value_name = "SECONDS", default_value_t = 60.0, allow_negative_numbers = true)]
     pub clock_offset_s: f64,
-    /// How much faster than the video's time it runs, millionths.
+    /// How much faster than the video's time the log's clock runs, millionths; as the video's
+    #[arg(long, value_name = "PPM", default_value_t = 0.0, allow_negative_numbers = true)]
     pub clock_drift_ppm: f64,
-    /// The log's clock is set: from a time of the video on, its stamps say more or less.
+    /// The log's clock is set so many seconds forward at this time of the video, as 5+3.5 or 5-3.5
+    #[arg(long, value_name = "TIME+SECONDS", value_parser = parse_set_clock)]
     pub clock_jump: Option<Jump>,
-    /// How rows say their time.
+    /// How rows say their time; for dates, the log's clock is the time of day
+    #[arg(long, value_enum, default_value = "seconds")]
     pub stamps: Stamps,
-    /// Stamps err by up to so much either way, seconds.
+    /// Stamps err by up to so much either way
+    #[arg(long = "jitter", value_name = "SECONDS", default_value_t = 0.0)]
     pub jitter_s: f64,
-    /// Stamps are cut to whole steps of so many seconds; 0: not.
+    /// Stamps are cut to whole steps of so much, so that some repeat
+    #[arg(long = "stamp-step", value_name = "SECONDS", default_value_t = 0.0)]
     pub stamp_step_s: f64,
-    /// The share of rows that are lost.
+    /// This share of the rows is lost
+    #[arg(long = "drop", value_name = "SHARE", default_value_t = 0.0)]
     pub dropped: f64,
-    /// All rows are lost from a time of the video on, for so many seconds.
+    /// All rows are lost from this time of the video on, for so many seconds; again for more
+    #[arg(long = "gap", value_name = "FROM+LENGTH", value_parser = parse_gap)]
     pub gaps_s: Vec<[f64; 2]>,
-    /// The LED goes on and off in turn, and a column says so; otherwise it is always on.
+
+    /// The LED is always on, and there is no column for it
+    #[arg(long = "no-led", action = ArgAction::SetFalse)]
     pub led: bool,
-    /// Standard deviation of a reading, volts.
+    /// Standard deviation of a reading
+    #[arg(long = "noise", value_name = "VOLTS", default_value_t = 0.0005)]
     pub noise_sd_v: f64,
-    /// The ambient light's mean, volts.
+    /// Light that is not the LED's
+    #[arg(long = "ambient", value_name = "VOLTS", default_value_t = 0.5)]
     pub ambient_v: f64,
-    /// How far it goes up and down, as a share.
+    /// It goes up and down by so much, most of it slowly, a quarter of it with the lamps' hum
+    #[arg(long, value_name = "PERCENT", default_value = "10", value_parser = parse_percent)]
     pub ambient_swing: f64,
-    /// Of the lamps' light, hertz.
+    /// The lamps' hum
+    #[arg(long = "hum", value_name = "HZ", default_value_t = 100.0)]
     pub hum_hz: f64,
-    /// About how far photodiodes drift within the log, volts.
+    /// Photodiodes drift by about so much within minutes
+    #[arg(long = "wander", value_name = "VOLTS", default_value_t = 0.01)]
     pub wander_v: f64,
     /// Lags and hysteresis as shares of the sensor's.
+    #[command(flatten)]
     pub dynamics: Dynamics,
     /// What a day's wear adds.
+    #[arg(skip = DisturbanceSizes::NONE)]
     #[serde(skip_serializing_if = "DisturbanceSizes::is_none")]
     pub disturbances: DisturbanceSizes,
     /// The log has the columns of the force transducer.
+    #[arg(skip = true)]
     #[serde(skip_serializing_if = "is_true")]
     pub forces: bool,
     /// The log has a column `contact`, as of an ideal switch under the finger.
+    #[arg(skip)]
     #[serde(skip_serializing_if = "is_false")]
     pub contact: bool,
     /// P2 and P3 are amplified so much that a fifth of what they should read is over 10 V.
+    #[arg(skip)]
     pub saturate: bool,
     /// Photodiodes that read nothing, 1 for P1.
+    #[arg(skip)]
     pub dead: Vec<usize>,
 }
 
@@ -164,6 +203,21 @@ impl LogOptions {
         self.positions.as_ref().map_or(CHANNELS, |positions| positions.photodiodes.len().min(CHANNELS))
     }
 
+    /// The light that is not the LED's.
+    pub(super) fn ambient(&self) -> Ambient {
+        Ambient::new(self.seed, self.ambient_v, self.ambient_swing, self.hum_hz)
+    }
+
+    /// The drift within the log.
+    pub(super) fn wander(&self) -> Wander {
+        Wander::new(self.seed, self.wander_v)
+    }
+
+    /// The pulse, bumps, raised hands and the drift over hours, where there are any.
+    pub(super) fn disturbances(&self) -> Option<Disturbances> {
+        (!self.disturbances.is_none()).then(|| Disturbances::new(self.seed, self.disturbances))
+    }
+
     /// The contacts that the finger makes of its own accord, if it does.
     pub(super) fn contacts(&self) -> Option<&Contacts> {
         match &self.force {
@@ -175,42 +229,6 @@ impl LogOptions {
 
 impl Default for LogOptions {
     fn default() -> Self {
-        let clock = Clock::default();
-        Self {
-            seed: 1,
-            subject: 1,
-            session: 1,
-            sensor: SensorModel::Formulae,
-            positions: None,
-            trajectory: Trajectory::Eq27 { hz: 0.1 },
-            force: ForceTrajectory::None,
-            touch_from_s: None,
-            follow: 0.0,
-            posture_shift_rad: 0.0,
-            seconds: 10.0,
-            lead_s: 1.0,
-            trail_s: 1.0,
-            rate_hz: 25.0,
-            clock_offset_s: clock.offset_s,
-            clock_drift_ppm: clock.drift_ppm,
-            clock_jump: None,
-            stamps: Stamps::Seconds,
-            jitter_s: 0.0,
-            stamp_step_s: 0.0,
-            dropped: 0.0,
-            gaps_s: Vec::new(),
-            led: true,
-            noise_sd_v: 0.0005,
-            ambient_v: 0.5,
-            ambient_swing: 0.1,
-            hum_hz: 100.0,
-            wander_v: 0.01,
-            dynamics: Dynamics::default(),
-            disturbances: DisturbanceSizes::NONE,
-            forces: true,
-            contact: false,
-            saturate: false,
-            dead: Vec::new(),
-        }
+        job::defaults()
     }
 }

@@ -1,9 +1,8 @@
-//! A log that is settled: its sensor, its light, and the rows that are taken of it.
+//! A log that is settled: its sensor, and the rows that are taken of it.
 
-use super::doing::shift_rad;
 use super::samples::{FULL_V, Row, Samples};
 use super::{Faults, LogOptions};
-use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Sensor, Wander};
+use crate::phantom::sensor::{CHANNELS, Sensor};
 
 /// With saturation: the photodiodes, and the share of what they should read that is below full scale.
 const SATURATED: [usize; 2] = [1, 2];
@@ -14,9 +13,6 @@ const BELOW_FULL: f64 = 0.8;
 pub struct LogScene {
     options: LogOptions,
     sensor: Sensor,
-    ambient: Ambient,
-    wander: Wander,
-    disturbances: Disturbances,
     /// By how much each photodiode is amplified.
     gains: [f64; CHANNELS],
 }
@@ -29,9 +25,6 @@ impl LogScene {
     pub fn new(options: LogOptions) -> Result<Self, Faults> {
         options.check()?;
         let mut sensor = Sensor::new(options.subject, options.session);
-        let ambient = Ambient::new(options.seed, options.ambient_v, options.ambient_swing, options.hum_hz);
-        let wander = Wander::new(options.seed, options.wander_v);
-        let disturbances = Disturbances::new(options.seed, options.disturbances);
         let gains = if options.saturate { saturating(&options) } else { [1.0; CHANNELS] };
         for (one, gain) in sensor.photodiodes.iter_mut().zip(gains) {
             one.rest_v *= gain;
@@ -39,7 +32,7 @@ impl LogScene {
             one.ambient *= gain;
             one.dark_v *= gain;
         }
-        Ok(Self { options, sensor, ambient, wander, disturbances, gains })
+        Ok(Self { options, sensor, gains })
     }
 
     /// What was asked for.
@@ -54,33 +47,9 @@ impl LogScene {
         &self.sensor
     }
 
-    /// The light that is not the LED's.
-    #[must_use]
-    pub fn ambient(&self) -> &Ambient {
-        &self.ambient
-    }
-
-    /// The drift within the log.
-    #[must_use]
-    pub fn wander(&self) -> &Wander {
-        &self.wander
-    }
-
-    /// The pulse, bumps, raised hands and the drift over hours.
-    #[must_use]
-    pub fn disturbances(&self) -> &Disturbances {
-        &self.disturbances
-    }
-
-    /// How far J1, J2, J3 are off straight while the finger touches or rests, radians.
-    #[must_use]
-    pub fn posture_shift_rad(&self) -> [f64; 3] {
-        shift_rad(&self.options)
-    }
-
     /// Takes the samples one after the other: the rows that are not lost, in order.
     pub fn samples(&self) -> impl Iterator<Item = Row> {
-        Samples::new(&self.options, self.gains, false)
+        Samples::new(&self.options, self.gains, false, None)
     }
 
     /// The rows that are not lost, in order, all in memory.
@@ -93,7 +62,7 @@ impl LogScene {
 /// Amplifies two photodiodes until a part of what they should read is over full scale.
 fn saturating(options: &LogOptions) -> [f64; CHANNELS] {
     let mut lit_v = SATURATED.map(|_| Vec::new());
-    for row in Samples::new(options, [1.0; CHANNELS], false).filter(|row| row.lit) {
+    for row in Samples::new(options, [1.0; CHANNELS], false, None).filter(|row| row.lit) {
         for (values, k) in lit_v.iter_mut().zip(SATURATED) {
             values.push(row.led_v[k] + row.unlit_v[k]);
         }

@@ -21,7 +21,7 @@ const FORCE_SD_N: f64 = 1e-3;
 pub(in crate::phantom) const BEFORE_S: f64 = 10.0;
 
 /// A row of a log, with its truth.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Row {
     /// Which sample it is, from 0; lost ones are counted.
     pub sample: usize,
@@ -109,13 +109,9 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Of a log that has passed its check; without end, it goes on after its seconds.
-    pub(super) fn new(options: &LogOptions, gains: [f64; CHANNELS], endless: bool) -> Self {
-        Self::prompted_by(options, gains, endless, None)
-    }
-
-    /// The same, of a finger that somebody prompts.
-    pub(super) fn prompted_by(
+    /// Of a log that has passed its check; without end, it goes on after its seconds. Its finger may be one that
+    /// somebody prompts.
+    pub(super) fn new(
         options: &LogOptions,
         gains: [f64; CHANNELS],
         endless: bool,
@@ -130,13 +126,12 @@ impl Samples {
         let sensor = Sensor::new(options.subject, options.session);
         let doing = Doing::until(options, if endless { f64::INFINITY } else { options.seconds }).prompted_by(prompting);
         let seen = Seen::new(options, &sensor, &doing);
-        let disturbances = Disturbances::new(options.seed, options.disturbances);
         Self {
             options: options.clone(),
             sensor,
-            ambient: Ambient::new(options.seed, options.ambient_v, options.ambient_swing, options.hum_hz),
-            wander: Wander::new(options.seed, options.wander_v),
-            disturbances: (!options.disturbances.is_none()).then_some(disturbances),
+            ambient: options.ambient(),
+            wander: options.wander(),
+            disturbances: options.disturbances(),
             gains,
             rng,
             doing,
@@ -166,13 +161,7 @@ impl Samples {
             log_s,
             stamp_s,
             lit: !options.led || sample.is_multiple_of(2),
-            touch: Touch { forces_n: [0.0; 3], angles_rad: [0.0; 3] },
-            contact: false,
-            forces_read_n: [0.0; 3],
-            read_v: [0.0; CHANNELS],
-            led_v: [0.0; CHANNELS],
-            static_v: [0.0; CHANNELS],
-            unlit_v: [0.0; CHANNELS],
+            ..Row::default()
         };
         (!lost && !in_gap).then_some(row)
     }

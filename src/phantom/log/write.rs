@@ -7,6 +7,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::angles::write_angles;
+use super::doing::shift_rad;
 use super::lines::{cells, columns};
 use super::truth::{TruthWriter, write_contacts};
 use super::{LogOptions, LogScene, SensorModel};
@@ -80,22 +81,23 @@ pub(in crate::phantom) fn write_rows(scene: &LogScene, log: &Path, true_log: &Pa
 }
 
 fn record_of(scene: &LogScene, rows: usize) -> serde_json::Value {
+    let options = scene.options();
     let mut record = serde_json::json!({
-        "options": scene.options(),
+        "options": options,
         "rows": rows,
-        "ambient": scene.ambient(),
-        "wander": scene.wander(),
+        "ambient": options.ambient(),
+        "wander": options.wander(),
     });
-    match scene.options().sensor {
+    match options.sensor {
         SensorModel::Formulae => record["photodiodes"] = serde_json::json!(scene.sensor()),
-        SensorModel::Nail => record["positions"] = serde_json::json!(scene.options().places()),
+        SensorModel::Nail => record["positions"] = serde_json::json!(options.places()),
     }
-    if scene.options().posture_shift_rad != 0.0 {
+    if options.posture_shift_rad != 0.0 {
         // Beside what was allowed, what it was.
-        record["posture_shift_deg"] = scene.posture_shift_rad().map(f64::to_degrees).into_iter().collect();
+        record["posture_shift_deg"] = shift_rad(options).map(f64::to_degrees).into_iter().collect();
     }
-    if !scene.options().disturbances.is_none() {
-        record["disturbances"] = serde_json::json!(scene.disturbances());
+    if let Some(disturbances) = options.disturbances() {
+        record["disturbances"] = serde_json::json!(disturbances);
     }
     record
 }

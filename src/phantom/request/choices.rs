@@ -1,5 +1,6 @@
 //! What videos and logs take in words: choices, movements, spans, colours, panels, sizes.
 
+use std::num::ParseFloatError;
 use std::path::Path;
 
 use crate::input;
@@ -84,14 +85,19 @@ pub(super) fn parse_jump(text: &str) -> Result<(usize, f64), String> {
     parts.ok_or_else(|| format!("`{text}` is not FRAME+SECONDS, as 90+5 or 90-5"))
 }
 
-pub(super) fn parse_set_clock(text: &str) -> Result<Jump, String> {
+pub(in crate::phantom) fn parse_set_clock(text: &str) -> Result<Jump, String> {
     let parts = parse_signed(text).and_then(|(at_s, by_s)| Some(Jump { at_s: at_s.parse().ok()?, by_s }));
     parts.ok_or_else(|| format!("`{text}` is not TIME+SECONDS, as 5+3.5 or 5-3.5"))
 }
 
-pub(super) fn parse_gap(text: &str) -> Result<[f64; 2], String> {
+pub(in crate::phantom) fn parse_gap(text: &str) -> Result<[f64; 2], String> {
     let parts = text.split_once('+').and_then(|(from, length)| Some([from.parse().ok()?, length.parse().ok()?]));
     parts.ok_or_else(|| format!("`{text}` is not FROM+LENGTH, as 4+1.5"))
+}
+
+/// A share, given as so many per cent.
+pub(in crate::phantom) fn parse_percent(text: &str) -> Result<f64, ParseFloatError> {
+    text.parse::<f64>().map(|percent| 0.01 * percent)
 }
 
 pub(super) fn parse_photodiode(text: &str) -> Result<usize, String> {

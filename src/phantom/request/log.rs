@@ -4,13 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::choices::{parse_gap, parse_photodiode, parse_set_clock, positions, trajectory};
+use super::choices::{parse_photodiode, positions, trajectory};
 use super::worn::WornRequest;
-use crate::phantom::log::{LogOptions, Protocol, SensorModel, Stamps};
+use crate::phantom::log::{LogOptions, Protocol, SensorModel};
 use crate::phantom::motion::force::{Cycles, ForceTrajectory, Spiral};
 use crate::phantom::motion::trajectory::Trajectory;
-use crate::phantom::screen::Jump;
-use crate::phantom::sensor::Dynamics;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ForceArg {
@@ -92,64 +90,8 @@ pub struct LogRequest {
     /// The video's length [default: 10, or as long as a given trajectory, or the spiral's T, or the protocol]
     #[arg(long)]
     seconds: Option<f64>,
-    /// The log begins so long before the video
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
-    lead: f64,
-    /// It goes on so long after the video
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
-    trail: f64,
-    /// Samples a second, lit and unlit ones together
-    #[arg(long, value_name = "HZ", default_value_t = 25.0)]
-    rate: f64,
-    /// What the log's clock says at the video's first frame; as the video's --clock-offset
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_negative_numbers = true)]
-    clock_offset: f64,
-    /// How much faster than the video's time the log's clock runs, millionths; as the video's
-    #[arg(long, value_name = "PPM", default_value_t = 0.0, allow_negative_numbers = true)]
-    clock_drift_ppm: f64,
-    /// The log's clock is set so many seconds forward at this time of the video, as 5+3.5 or 5-3.5
-    #[arg(long, value_name = "TIME+SECONDS", value_parser = parse_set_clock)]
-    clock_jump: Option<Jump>,
-    /// How rows say their time; for dates, the log's clock is the time of day
-    #[arg(long, value_enum, default_value = "seconds")]
-    stamps: Stamps,
-    /// Stamps err by up to so much either way
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    jitter: f64,
-    /// Stamps are cut to whole steps of so much, so that some repeat
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    stamp_step: f64,
-    /// This share of the rows is lost
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
-    drop: f64,
-    /// All rows are lost from this time of the video on, for so many seconds; again for more
-    #[arg(long, value_name = "FROM+LENGTH", value_parser = parse_gap)]
-    gap: Vec<[f64; 2]>,
-
-    /// The LED is always on, and there is no column for it
-    #[arg(long)]
-    no_led: bool,
-    /// Standard deviation of a reading
-    #[arg(long, value_name = "VOLTS", default_value_t = 0.0005)]
-    noise: f64,
-    /// Light that is not the LED's
-    #[arg(long, value_name = "VOLTS", default_value_t = 0.5)]
-    ambient: f64,
-    /// It goes up and down by so much, most of it slowly, a quarter of it with the lamps' hum
-    #[arg(long, value_name = "PERCENT", default_value_t = 10.0)]
-    ambient_swing: f64,
-    /// The lamps' hum
-    #[arg(long, value_name = "HZ", default_value_t = 100.0)]
-    hum: f64,
-    /// Photodiodes drift by about so much within minutes
-    #[arg(long, value_name = "VOLTS", default_value_t = 0.01)]
-    wander: f64,
-    /// The blood's lag as a share of the usual 0.12 to 0.36 s; 0: none
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
-    lag: f64,
-    /// Hysteresis as a share of the usual; 0: none
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
-    hysteresis: f64,
+    #[command(flatten)]
+    log: LogOptions,
     #[command(flatten)]
     worn: WornRequest,
     /// P2 and P3 are amplified so much that a fifth of their lit readings is cut at 10 V
@@ -247,29 +189,12 @@ impl LogRequest {
                 .or(span_s)
                 .or(after_s)
                 .unwrap_or(usual.seconds),
-            lead_s: self.lead,
-            trail_s: self.trail,
-            rate_hz: self.rate,
-            clock_offset_s: self.clock_offset,
-            clock_drift_ppm: self.clock_drift_ppm,
-            clock_jump: self.clock_jump,
-            stamps: self.stamps,
-            jitter_s: self.jitter,
-            stamp_step_s: self.stamp_step,
-            dropped: self.drop,
-            gaps_s: self.gap.clone(),
-            led: !self.no_led,
-            noise_sd_v: self.noise,
-            ambient_v: self.ambient,
-            ambient_swing: 0.01 * self.ambient_swing,
-            hum_hz: self.hum,
-            wander_v: self.wander,
-            dynamics: Dynamics { lag: self.lag, hysteresis: self.hysteresis },
             disturbances: self.worn.disturbances(usual.disturbances),
             forces: !self.worn.no_forces,
             contact: self.worn.contact,
             saturate: self.saturate,
             dead: self.dead.clone(),
+            ..self.log.clone()
         })
     }
 }

@@ -8,7 +8,9 @@ mod video;
 mod worn;
 
 pub use choices::parse_size;
-pub(in crate::phantom) use choices::{parse_plane, parse_span_of_frames, positions};
+pub(in crate::phantom) use choices::{
+    parse_gap, parse_percent, parse_plane, parse_set_clock, parse_span_of_frames, positions,
+};
 pub use log::LogRequest;
 pub use photos::PhotosRequest;
 pub use video::VideoRequest;

@@ -44,7 +44,7 @@ pub use wander::Wander;
 pub use worn::{WornSensor, person};
 
 /// What a fingertip does at a moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Touch {
     /// `[Fx, Fy, Fz]`, those of the finger on the surface, newtons; pressing is a negative Fz.
     pub forces_n: [f64; 3],

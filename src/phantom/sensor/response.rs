@@ -12,6 +12,7 @@
 //! line, along which the lag is exact; a moment between two steps is reached by a part of one, so that what is asked
 //! for does not change what comes after.
 
+use clap::Args;
 use serde::Serialize;
 
 use super::{CHANNELS, Sensor, Touch};
@@ -27,11 +28,13 @@ const PLAY_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
 const PLAY_SHARE: f64 = 0.5;
 
 /// How much there is of what is not static.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Args, Serialize)]
 pub struct Dynamics {
-    /// The lags as a share of the sensor's.
+    /// The blood's lag as a share of the usual 0.12 to 0.36 s; 0: none
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
     pub lag: f64,
-    /// The plays' half widths as a share of the usual.
+    /// Hysteresis as a share of the usual; 0: none
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
     pub hysteresis: f64,
 }
 
