@@ -13,7 +13,7 @@ use lunula::{
     phantom::{
         Error,
         nail::Pose,
-        photos::{FileFormat, OptionFault, PhotoOptions, write, write_watched},
+        photos::{FileFormat, PhotoOptions, write, write_watched},
     },
 };
 use ndarray::Array2;
@@ -174,20 +174,20 @@ fn formats_and_depths_are_read_back() {
 #[test]
 fn what_cannot_be_made_is_refused_before_anything_is_written() {
     let faults = [
-        (PhotoOptions { subjects: 0, ..small() }, OptionFault::NoSubject),
-        (PhotoOptions { poses: vec![], ..small() }, OptionFault::NoPose),
-        (PhotoOptions { poses: vec![Pose::Normal; 2], ..small() }, OptionFault::PoseTwice(Pose::Normal)),
-        (PhotoOptions { depth: 12, ..small() }, OptionFault::Depth(12)),
-        (PhotoOptions { depth: 16, format: FileFormat::Jpg, ..small() }, OptionFault::DeepFormat(FileFormat::Jpg)),
-        (PhotoOptions { noise_sd: -1.0, ..small() }, OptionFault::Noise(-1.0)),
-        (PhotoOptions { size: 0, ..small() }, OptionFault::Size),
-        (PhotoOptions { margin: 0.5, ..small() }, OptionFault::Margin(0.5)),
+        (PhotoOptions { subjects: 0, ..small() }, "at least one subject"),
+        (PhotoOptions { poses: vec![], ..small() }, "at least one pose"),
+        (PhotoOptions { poses: vec![Pose::Normal; 2], ..small() }, "the pose normal is wanted twice"),
+        (PhotoOptions { depth: 12, ..small() }, "12 bits a channel"),
+        (PhotoOptions { depth: 16, format: FileFormat::Jpg, ..small() }, "jpg files hold 8 bits a channel"),
+        (PhotoOptions { noise_sd: -1.0, ..small() }, "standard deviation -1 "),
+        (PhotoOptions { size: 0, ..small() }, "at least one pixel a side"),
+        (PhotoOptions { margin: 0.5, ..small() }, "a margin of 0.5 "),
     ];
     let out = tempfile::tempdir().unwrap();
     let place = out.path().join("new");
     for (options, expected) in faults {
         match write(&options, &place) {
-            Err(Error::Options(fault)) => assert_eq!(fault, expected),
+            Err(Error::Options(fault)) => assert!(fault.to_string().contains(expected), "{fault}"),
             other => panic!("{expected:?} expected, not {other:?}"),
         }
     }

@@ -100,33 +100,28 @@ impl BoardOptions {
         let edge = |side: u32| [0.0, f64::from(side) - 1.0];
         let corners = edge(width).into_iter().flat_map(|x| edge(height).map(|y| [x, y]));
         let whole = corners.into_iter().all(|corner| mapping.ray(corner).is_some());
-        let needs = [
-            ((1..=200).contains(&self.views), format!("--views {}: choose 1 to 200", self.views)),
-            (
-                (64..=8192).contains(&width) && (64..=8192).contains(&height),
-                format!("--size {width}x{height}: sides from 64 to 8192 pixels can be drawn"),
-            ),
-            (
-                self.focal_px().iter().all(|focal| focal.is_finite() && *focal > 0.0),
-                "--fx, --fy: choose more than 0 px".to_owned(),
-            ),
-            (
-                self.distortion.len() <= 5 && self.distortion.iter().all(|k| k.is_finite()),
-                "--distortion: up to five numbers k1,k2,p1,p2,k3".to_owned(),
-            ),
-            (whole, format!("--distortion {:?}: so strong that the picture folds over; choose less", self.distortion)),
-            (
-                0.0 <= least && least <= most && most <= MOST_TILT_DEG,
-                format!("--tilt {least},{most}: choose 0 to {MOST_TILT_DEG} degrees, the least first"),
-            ),
-            ((0.0..=128.0).contains(&self.noise), format!("--noise {}: choose 0 to 128 of 255", self.noise)),
-            ((0.3..=20.0).contains(&self.focus), format!("--focus {}: choose 0.3 to 20 px", self.focus)),
-            (
-                self.plane.is_none_or(|plane| (0.0..=MOST_TILT_DEG).contains(&plane.tilt_deg)),
-                format!("--plane: choose a tilt of 0 to {MOST_TILT_DEG} degrees"),
-            ),
-        ];
-        let faults: Vec<String> = needs.into_iter().filter(|(holds, _)| !holds).map(|(_, what)| what).collect();
-        if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
+        let mut faults = Faults::default();
+        faults.need((1..=200).contains(&self.views), || format!("--views {}: choose 1 to 200", self.views));
+        faults.need((64..=8192).contains(&width) && (64..=8192).contains(&height), || {
+            format!("--size {width}x{height}: sides from 64 to 8192 pixels can be drawn")
+        });
+        faults.need(self.focal_px().iter().all(|focal| focal.is_finite() && *focal > 0.0), || {
+            "--fx, --fy: choose more than 0 px".to_owned()
+        });
+        faults.need(self.distortion.len() <= 5 && self.distortion.iter().all(|k| k.is_finite()), || {
+            "--distortion: up to five numbers k1,k2,p1,p2,k3".to_owned()
+        });
+        faults.need(whole, || {
+            format!("--distortion {:?}: so strong that the picture folds over; choose less", self.distortion)
+        });
+        faults.need(0.0 <= least && least <= most && most <= MOST_TILT_DEG, || {
+            format!("--tilt {least},{most}: choose 0 to {MOST_TILT_DEG} degrees, the least first")
+        });
+        faults.range("--noise", self.noise, 0.0, 128.0, " of 255");
+        faults.range("--focus", self.focus, 0.3, 20.0, " px");
+        faults.need(self.plane.is_none_or(|plane| (0.0..=MOST_TILT_DEG).contains(&plane.tilt_deg)), || {
+            format!("--plane: choose a tilt of 0 to {MOST_TILT_DEG} degrees")
+        });
+        faults.none()
     }
 }

@@ -57,16 +57,14 @@ impl LiveLog {
     }
 
     fn of(options: &LogOptions, endless: bool, prompting: Option<Prompting>) -> Result<Self, Faults> {
-        let mut faults = options.check().err().unwrap_or(Faults(Vec::new()));
-        if options.saturate {
-            faults.0.push("--saturate: needs the whole log before its first row; leave it out".to_owned());
-        }
-        if options.stamps == Stamps::Datetime {
-            faults.0.push("--stamps datetime: rows are sent as numbers; choose seconds or epoch".to_owned());
-        }
-        if !faults.0.is_empty() {
-            return Err(faults);
-        }
+        let mut faults = options.check().err().unwrap_or_default();
+        faults.need(!options.saturate, || {
+            "--saturate: needs the whole log before its first row; leave it out".to_owned()
+        });
+        faults.need(options.stamps != Stamps::Datetime, || {
+            "--stamps datetime: rows are sent as numbers; choose seconds or epoch".to_owned()
+        });
+        faults.none()?;
         let samples = Samples::new(options, [1.0; CHANNELS], endless, prompting);
         Ok(Self { options: options.clone(), columns: columns(options), samples })
     }

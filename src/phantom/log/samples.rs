@@ -155,14 +155,8 @@ impl Samples {
         }
         let lost = self.rng.random_bool(options.dropped);
         let in_gap = options.gaps_s.iter().any(|&[from_s, length_s]| (from_s..from_s + length_s).contains(&scene_s));
-        let row = Row {
-            sample,
-            scene_s,
-            log_s,
-            stamp_s,
-            lit: !options.led || sample.is_multiple_of(2),
-            ..Row::default()
-        };
+        let row =
+            Row { sample, scene_s, log_s, stamp_s, lit: !options.led || sample.is_multiple_of(2), ..Row::default() };
         (!lost && !in_gap).then_some(row)
     }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use crate::job;
 use crate::nail::Positions;
 use crate::phantom::force::{Cycles, ForceTrajectory, Spiral};
 use crate::phantom::log::{LogOptions, SensorModel};
@@ -182,41 +183,7 @@ impl NailVideoRequest {
 
 impl Default for NailVideoOptions {
     fn default() -> Self {
-        Self {
-            seed: 1,
-            subject: 1,
-            session: 1,
-            positions: None,
-            protocol: NailProtocol::Press,
-            press_n: 3.0,
-            held_s: 2.5,
-            pause_s: 3.5,
-            seconds: None,
-            fps: 30.0,
-            size: (640, 480),
-            nail_px: 190.0,
-            drift_px: 8.0,
-            turn_deg: 1.5,
-            scale_percent: 1.0,
-            tilt_percent: 1.0,
-            jerk_px: 0.0,
-            level: 1.3,
-            gradient_percent: 0.0,
-            light_drift_percent: 0.0,
-            flicker_percent: 0.0,
-            flicker_hz: 99.0,
-            colour_drift_percent: 0.0,
-            glare_percent: 0.0,
-            rod: Vec::new(),
-            finger: Vec::new(),
-            cut: Vec::new(),
-            leave: None,
-            blur: 0.0,
-            noise: 1.0,
-            normalized_every: None,
-            crf: 18,
-            coding: Coding::default(),
-        }
+        job::defaults()
     }
 }
 

@@ -1,12 +1,12 @@
 //! What set of photographs is wanted, and the scene of each.
 
+use clap::{ArgAction, Args};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
-use crate::phantom::nail::{
-    Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, SceneFault, Subject, numbers,
-};
+use crate::job;
+use crate::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject, numbers};
+use crate::phantom::scene::faults::Faults;
 
 /// The photographs' file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -46,91 +46,58 @@ pub enum LightKind {
     Varied,
 }
 
-/// A set of photographs to be made.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A set of photographs to be made: what the command line gives as it is, and what
+/// [`PhotosRequest`](crate::phantom::request::PhotosRequest) makes of the rest.
+#[derive(Debug, Clone, PartialEq, Args, Serialize, Deserialize)]
 pub struct PhotoOptions {
     /// Everything random follows from it.
+    #[arg(skip = 1_u64)]
     pub seed: u64,
     /// How many subjects.
+    #[arg(skip = 16_u32)]
     pub subjects: u32,
     /// Which poses.
-    #[serde(with = "pose_names")]
+    #[arg(skip = Pose::ALL.to_vec())]
     pub poses: Vec<Pose>,
     /// Width of the photographs in pixels.
+    #[arg(skip = 640_u32)]
     pub width: u32,
     /// Height of the photographs in pixels.
+    #[arg(skip = 480_u32)]
     pub height: u32,
-    /// Bits a channel: 8 or 16.
+    /// Bits per channel
+    #[arg(long, default_value_t = 8)]
     pub depth: u32,
-    /// One channel, as through a green filter.
+    /// One channel, as through the thesis' green filter
+    #[arg(long)]
     pub grey: bool,
-    /// Standard deviation of the sensor's noise, in 255ths of full scale whatever the depth.
+    /// Standard deviation of the sensor's noise, in 255ths of full scale
+    #[arg(long = "noise", value_name = "NOISE", default_value_t = 0.5)]
     pub noise_sd: f64,
-    /// The photographs' file format.
+    /// File format of the photographs
+    #[arg(long, value_enum, default_value = "png")]
     pub format: FileFormat,
-    /// Under which lights.
+    /// The thesis' chamber, or dim to bright, tinted, with glare, nails of many sizes up to 30 degrees off upright
+    #[arg(long, value_enum, default_value = "varied")]
     pub light: LightKind,
-    /// Write the outline beside each photograph.
+    /// Draw no outlines beside the photographs
+    #[arg(long = "no-annotations", action = ArgAction::SetFalse)]
     pub annotate: bool,
     /// Side of the truth's normalized pictures in pixels.
+    #[arg(skip = 400_usize)]
     pub size: usize,
     /// Side of the normalized picture over the nail's.
+    #[arg(skip = 1.25)]
     pub margin: f64,
-    /// Write each photograph's exact normalized picture (0.64 MB each at size 400).
+    /// Leave out truth/normalized (0.6 MB a photograph)
+    #[arg(long = "no-normalized", action = ArgAction::SetFalse)]
     pub truth_normalized: bool,
 }
 
 impl Default for PhotoOptions {
     fn default() -> Self {
-        Self {
-            seed: 1,
-            subjects: 16,
-            poses: Pose::ALL.to_vec(),
-            width: 640,
-            height: 480,
-            depth: 8,
-            grey: false,
-            noise_sd: 0.5,
-            format: FileFormat::Png,
-            light: LightKind::Varied,
-            annotate: true,
-            size: 400,
-            margin: 1.25,
-            truth_normalized: true,
-        }
+        job::defaults()
     }
-}
-
-/// Why no set can be made as wanted.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum OptionFault {
-    /// No subject.
-    #[error("a set needs at least one subject")]
-    NoSubject,
-    /// No pose.
-    #[error("a set needs at least one pose")]
-    NoPose,
-    /// A pose twice.
-    #[error("the pose {0} is wanted twice")]
-    PoseTwice(Pose),
-    /// A depth that no camera has here.
-    #[error("{0} bits a channel can't be written; choose 8 or 16")]
-    Depth(u32),
-    /// 16 bit in a format that holds 8.
-    #[error("{} files hold 8 bits a channel, not 16; choose png or tif", .0.extension())]
-    DeepFormat(FileFormat),
-    /// Noise that is none.
-    #[error("a noise of standard deviation {0} can't be drawn; choose 0 or more")]
-    Noise(f64),
-    /// A normalized picture without pixels.
-    #[error("a normalized picture needs at least one pixel a side")]
-    Size,
-    /// A normalized picture without a nail.
-    #[error("a margin of {0} can't be used; choose 1 or more (1.25 leaves an eighth of the nail around it)")]
-    Margin(f64),
-    /// The photographs can't be drawn.
-    #[error(transparent)]
-    Scene(#[from] SceneFault),
 }
 
 const KIND_SCENE: u32 = 3;
@@ -139,36 +106,43 @@ impl PhotoOptions {
     /// Can this set be made?
     ///
     /// # Errors
-    /// [`OptionFault`], the first thing that is wrong.
-    pub fn check(&self) -> Result<(), OptionFault> {
+    /// [`Faults`], the first thing that is wrong.
+    pub fn check(&self) -> Result<(), Faults> {
+        let refused = |what: String| Err(Faults(vec![what]));
         if self.subjects == 0 {
-            return Err(OptionFault::NoSubject);
+            return refused("a set needs at least one subject".to_owned());
         }
         if self.poses.is_empty() {
-            return Err(OptionFault::NoPose);
+            return refused("a set needs at least one pose".to_owned());
         }
-        if let Some((_, &pose)) = self.poses.iter().enumerate().find(|&(k, pose)| self.poses[..k].contains(pose)) {
-            return Err(OptionFault::PoseTwice(pose));
+        if let Some((_, pose)) = self.poses.iter().enumerate().find(|&(k, pose)| self.poses[..k].contains(pose)) {
+            return refused(format!("the pose {pose} is wanted twice"));
         }
         if self.depth != 8 && self.depth != 16 {
-            return Err(OptionFault::Depth(self.depth));
+            return refused(format!("{} bits a channel can't be written; choose 8 or 16", self.depth));
         }
         if self.depth == 16 && matches!(self.format, FileFormat::Jpg | FileFormat::Bmp) {
-            return Err(OptionFault::DeepFormat(self.format));
+            let format = self.format.extension();
+            return refused(format!("{format} files hold 8 bits a channel, not 16; choose png or tif"));
         }
         if !(self.noise_sd.is_finite() && self.noise_sd >= 0.0) {
-            return Err(OptionFault::Noise(self.noise_sd));
+            let noise_sd = self.noise_sd;
+            return refused(format!("a noise of standard deviation {noise_sd} can't be drawn; choose 0 or more"));
         }
         if self.size == 0 {
-            return Err(OptionFault::Size);
+            return refused("a normalized picture needs at least one pixel a side".to_owned());
         }
         if !(self.margin.is_finite() && self.margin >= 1.0) {
-            return Err(OptionFault::Margin(self.margin));
+            return refused(format!(
+                "a margin of {} can't be used; choose 1 or more (1.25 leaves an eighth of the nail around it)",
+                self.margin
+            ));
         }
-        for subject in 0..self.subjects {
-            self.scene(subject, self.poses[0]).check()?;
+        let scenes = (0..self.subjects).map(|subject| self.scene(subject, self.poses[0]));
+        match scenes.filter_map(|scene| scene.check().err()).next() {
+            Some(fault) => refused(fault.to_string()),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The name of subject `index`: `s01`, `s02`, ...
@@ -207,21 +181,5 @@ impl PhotoOptions {
         let noise_seed = self.seed.rotate_left(32) ^ u64::from(Self::photograph(subject, pose));
         let depth = if self.depth == 16 { Depth::Sixteen } else { Depth::Eight };
         RenderOptions { depth, grey: self.grey, noise_sd: self.noise_sd, noise_seed }
-    }
-}
-
-/// Poses by their names.
-mod pose_names {
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    use super::Pose;
-
-    pub(super) fn serialize<S: Serializer>(poses: &[Pose], serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(poses.iter().map(|pose| pose.name()))
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Pose>, D::Error> {
-        let names = Vec::<String>::deserialize(deserializer)?;
-        names.iter().map(|name| name.parse().map_err(D::Error::custom)).collect()
     }
 }

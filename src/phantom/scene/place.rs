@@ -10,7 +10,7 @@ use crate::files::{Staging, WriteError};
 use crate::job::Interrupted;
 use crate::labelme;
 use crate::phantom::nail::SceneFault;
-use crate::phantom::photos::OptionFault;
+use crate::phantom::scene::faults::Faults;
 use crate::table::TableError;
 use crate::video::VideoError;
 
@@ -22,7 +22,7 @@ pub(in crate::phantom) const PHOTOS_RECORD: &str = "truth/phantom.json";
 pub enum Error {
     /// The options of photographs can't be met.
     #[error(transparent)]
-    Options(#[from] OptionFault),
+    Options(#[from] Faults),
     /// A nail can't be drawn.
     #[error(transparent)]
     Scene(#[from] SceneFault),

@@ -80,7 +80,7 @@ fn sorted(mut files: Vec<String>) -> Vec<String> {
 
 impl Generated for PhotoOptions {
     fn check(&self) -> Result<(), Faults> {
-        self.check().map_err(|fault| Faults(vec![fault.to_string()]))
+        self.check()
     }
 
     fn options(&self) -> Value {

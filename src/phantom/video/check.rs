@@ -10,80 +10,67 @@ impl VideoOptions {
     /// # Errors
     /// [`Faults`]: all that is wrong.
     pub fn check(&self) -> Result<(), Faults> {
-        let mut faults = Faults(Vec::new());
-        let mut need = |holds: bool, words: &dyn Fn() -> String| {
-            if !holds {
-                faults.0.push(words());
-            }
-        };
+        let mut faults = Faults::default();
         let size = format!("{}x{}", self.width, self.height);
         let sides = [self.width, self.height];
-        need(sides.iter().all(|side| (32..=8192).contains(side)), &|| {
+        faults.need(sides.iter().all(|side| (32..=8192).contains(side)), || {
             format!("--size {size}: sides from 32 to 8192 pixels can be drawn")
         });
         let stored = self.format();
         let (across, down) = stored.subsampling.unwrap_or((1, 1));
-        need(stored.width.is_multiple_of(across) && stored.height.is_multiple_of(down), &|| {
+        faults.need(stored.width.is_multiple_of(across) && stored.height.is_multiple_of(down), || {
             format!("--size {size}: this chroma needs even sides; choose them or --format 444")
         });
-        let between = |value: f64, low: f64, high: f64| (low..=high).contains(&value);
-        let mut ranged = |option: &str, value: f64, low: f64, high: f64, unit: &str| {
-            need(between(value, low, high), &|| format!("{option} {value}: choose {low} to {high}{unit}"));
-        };
-        ranged("--fps", self.fps, 1.0, 1000.0, " frames a second");
-        ranged("--seconds", self.seconds, 0.0, 36000.0, " s");
-        ranged("--vfr", self.jitter, 0.0, 0.9, " of an interval");
-        ranged("--sway", self.sway_px, 0.0, 0.25 * self.width as f64, " px");
-        ranged("--blur", self.blur, 0.0, 1.0, " of the frame interval");
-        ranged("--flicker", 100.0 * self.flicker, 0.0, 90.0, " %");
-        ranged("--flicker-hz", self.flicker_hz, 0.0, 1e5, " Hz");
-        ranged("--gradient", 100.0 * self.gradient, 0.0, 90.0, " %");
-        ranged("--focus", self.focus_px, 0.3, 20.0, " px");
-        ranged("--noise", self.noise_sd, 0.0, 128.0, " of 255");
-        ranged("--crf", f64::from(self.crf), 0.0, 51.0, "");
-        if let Some(fault) = self.trajectory.fault() {
-            need(false, &|| fault.clone());
-        }
-        need(self.frames() > 0, &|| format!("--seconds {}: less than a frame", self.seconds));
-        need([8, 10].contains(&self.depth), &|| format!("--depth {}: choose 8 or 10", self.depth));
-        need(Coding::PRESETS.contains(&self.preset), &|| {
+        faults.range("--fps", self.fps, 1.0, 1000.0, " frames a second");
+        faults.range("--seconds", self.seconds, 0.0, 36000.0, " s");
+        faults.range("--vfr", self.jitter, 0.0, 0.9, " of an interval");
+        faults.range("--sway", self.sway_px, 0.0, 0.25 * self.width as f64, " px");
+        faults.range("--blur", self.blur, 0.0, 1.0, " of the frame interval");
+        faults.range("--flicker", 100.0 * self.flicker, 0.0, 90.0, " %");
+        faults.range("--flicker-hz", self.flicker_hz, 0.0, 1e5, " Hz");
+        faults.range("--gradient", 100.0 * self.gradient, 0.0, 90.0, " %");
+        faults.range("--focus", self.focus_px, 0.3, 20.0, " px");
+        faults.range("--noise", self.noise_sd, 0.0, 128.0, " of 255");
+        faults.range("--crf", f64::from(self.crf), 0.0, 51.0, "");
+        faults.0.extend(self.trajectory.fault());
+        faults.need(self.frames() > 0, || format!("--seconds {}: less than a frame", self.seconds));
+        faults.need([8, 10].contains(&self.depth), || format!("--depth {}: choose 8 or 10", self.depth));
+        faults.need(Coding::PRESETS.contains(&self.preset), || {
             format!("--x264 {}: choose one of {}", self.preset, Coding::PRESETS.join(", "))
         });
         let (parts, finger) =
             (Finger::new(self.width, self.height, self.finger.flexion, self.finger.layout), &self.finger);
         let whole = finger.lengths_px.len() >= parts.lengths_px.len()
             && finger.half_widths_px.len() >= parts.half_widths_px.len();
-        need(whole, &|| "--layout: this finger has no thumb; start from one of this layout".to_owned());
+        faults.need(whole, || "--layout: this finger has no thumb; start from one of this layout".to_owned());
         let names = self.finger.layout.names();
         for hide in &self.hide {
             let (text, frames) = (format!("--hide {}@{}+{}", hide.marker, hide.frame, hide.frames), self.frames());
-            need(names.contains(&hide.marker), &|| {
+            faults.need(names.contains(&hide.marker), || {
                 format!("{text}: no marker of this name; there are {}", names.join(", "))
             });
-            need(hide.frames > 0 && hide.frame < frames, &|| {
+            faults.need(hide.frames > 0 && hide.frame < frames, || {
                 format!("{text}: the video has frames 0 to {}", frames - 1)
             });
         }
         if let Some(leave) = self.leave {
             let (text, frames) = (format!("--leave {}+{}", leave.frame, leave.frames), self.frames());
-            need(leave.frames > 0 && leave.frame < frames, &|| {
+            faults.need(leave.frames > 0 && leave.frame < frames, || {
                 format!("{text}: the video has frames 0 to {}", frames - 1)
             });
         }
         let known: Vec<&str> = self.finger.layout.joints().into_iter().map(|(joint, _)| joint).collect();
         for joint in &self.joints {
-            need(known.contains(&joint.as_str()), &|| match &known[..] {
+            faults.need(known.contains(&joint.as_str()), || match &known[..] {
                 [] => format!("--joints {joint}: a single mark has no joints"),
                 known => format!("--joints {joint}: there are {}", known.join(", ")),
             });
         }
-        need(!self.joints.is_empty() || known.is_empty(), &|| "--joints: name at least one".to_owned());
+        faults.need(!self.joints.is_empty() || known.is_empty(), || "--joints: name at least one".to_owned());
         if let Some(clock) = &self.clock {
-            if let Some(fault) = clock.fault() {
-                need(false, &|| format!("--clock {}: {fault}", clock.format));
-            }
+            faults.0.extend(clock.fault().map(|fault| format!("--clock {}: {fault}", clock.format)));
             if let Some(hz) = clock.refresh_hz {
-                need(hz.is_finite() && hz > 0.0, &|| format!("--clock-refresh {hz}: choose more than 0 Hz"));
+                faults.need(hz.is_finite() && hz > 0.0, || format!("--clock-refresh {hz}: choose more than 0 Hz"));
             }
             let frames = self.frames();
             let hidden = self
@@ -97,35 +84,37 @@ impl VideoOptions {
                     (format!("--clock-jump {frame}{by_s:+}"), frame < frames && by_s.abs() < 1e9)
                 });
             for (text, holds) in hidden.chain(stops).chain(jumps) {
-                need(holds, &|| format!("{text}: the video has frames 0 to {}", frames - 1));
+                faults.need(holds, || format!("{text}: the video has frames 0 to {}", frames - 1));
             }
-            need(clock.offset_s.is_finite() && clock.offset_s.abs() < 1e9, &|| {
+            faults.need(clock.offset_s.is_finite() && clock.offset_s.abs() < 1e9, || {
                 format!("--clock-offset {}: choose seconds within a thousand million", clock.offset_s)
             });
-            need(clock.drift_ppm.abs() < 1e6, &|| format!("--clock-drift-ppm {}: choose less", clock.drift_ppm));
+            faults.need(clock.drift_ppm.abs() < 1e6, || format!("--clock-drift-ppm {}: choose less", clock.drift_ppm));
             let [x, y, w, h] = self.clock_roi_px(clock);
-            need(w >= 8 && h >= 8 && x + w <= self.width && y + h <= self.height, &|| {
+            faults.need(w >= 8 && h >= 8 && x + w <= self.width && y + h <= self.height, || {
                 format!("--clock-roi {x},{y},{w},{h}: not within {size}, or smaller than 8 pixels")
             });
         }
         if let Some(lens) = &self.lens {
-            need(lens.distortion.len() <= 8 && lens.distortion.iter().all(|k| k.is_finite()), &|| {
+            faults.need(lens.distortion.len() <= 8 && lens.distortion.iter().all(|k| k.is_finite()), || {
                 "--distortion: up to eight numbers k1,k2,p1,p2,k3,k4,k5,k6".to_owned()
             });
-            need(lens.fx_px.is_none_or(|fx| fx.is_finite() && fx > 0.0), &|| "--fx: choose more than 0 px".to_owned());
+            faults.need(lens.fx_px.is_none_or(|fx| fx.is_finite() && fx > 0.0), || {
+                "--fx: choose more than 0 px".to_owned()
+            });
             let mapping = Mapping::new(lens, self.width, self.height);
             let corners = [[0, 0], [sides[0], 0], [0, sides[1]], sides].map(|c| c.map(|v| v as f64));
-            need(corners.into_iter().all(|corner| mapping.straight(corner).is_some()), &|| {
+            faults.need(corners.into_iter().all(|corner| mapping.straight(corner).is_some()), || {
                 format!("--distortion {:?}: so strong that the picture folds over; choose less", lens.distortion)
             });
         }
         if let Some(plane) = self.plane {
             let known = (0.0..=MOST_TILT_DEG).contains(&plane.tilt_deg) && plane.towards_deg.abs() <= 360.0;
-            need(known, &|| {
+            faults.need(known, || {
                 let Oblique { tilt_deg, towards_deg } = plane;
                 format!("--plane {tilt_deg},{towards_deg}: choose a tilt of 0 to {MOST_TILT_DEG}, towards -360 to 360")
             });
         }
-        if faults.0.is_empty() { Ok(()) } else { Err(faults) }
+        faults.none()
     }
 }

@@ -128,14 +128,15 @@ impl Study {
             }
         }
         // All videos are alike, and all logs: what is wrong with one is said once.
-        let mut faults = Faults(Vec::new());
+        let mut faults = Faults::default();
         for fault in entries.iter().filter_map(|(_, _, recording)| recording.check().err()).flat_map(|faults| faults.0)
         {
             if !faults.0.contains(&fault) {
                 faults.0.push(fault);
             }
         }
-        if faults.0.is_empty() { Ok(Self { options, subjects, entries }) } else { Err(faults) }
+        faults.none()?;
+        Ok(Self { options, subjects, entries })
     }
 
     /// What was asked for.

@@ -54,7 +54,7 @@ impl StudyOptions {
     /// # Errors
     /// [`Faults`]: all that is wrong.
     pub(super) fn check(&self) -> Result<(), Faults> {
-        let mut faults = Faults(Vec::new());
+        let mut faults = Faults::default();
         let Self { subjects, sensors, presses, .. } = *self;
         if !(1..=Self::MOST).contains(&subjects) {
             faults.0.push(format!("--subjects {subjects}: choose 1 to {}", Self::MOST));
@@ -64,6 +64,6 @@ impl StudyOptions {
                 faults.0.push(format!("{option} {value}: there are {subjects} subjects; choose no more than them"));
             }
         }
-        if faults.0.is_empty() { Ok(()) } else { Err(faults) }
+        faults.none()
     }
 }
