@@ -217,7 +217,7 @@ impl Prompter {
         };
         let Place::Phantom { settings, .. } = &source.what.place else { return Ok(None) };
         let desk = self.desk.clone();
-        let prompting = Prompting(Arc::new(move |time_s: f64| touch(desk.prompted(time_s))));
+        let prompting: Prompting = Arc::new(move |time_s: f64| touch(desk.prompted(time_s)));
         let rows = PhantomRows::prompted_by(settings, prompting);
         let named = |what: String| PromptError::Request(format!("{}: {what}", source.what));
         Ok(Some(Box::new(rows.map_err(named)?)))

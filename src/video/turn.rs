@@ -1,5 +1,7 @@
 //! The stored picture and the shown one: quarter turns.
 
+use crate::words::Words;
+
 /// How the stored picture is turned, clockwise, to be shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Turn {
@@ -14,15 +16,16 @@ pub enum Turn {
     ThreeQuarters,
 }
 
+/// By degrees clockwise.
+impl Words for Turn {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::None, "0", ""), (Self::Quarter, "90", ""), (Self::Half, "180", ""), (Self::ThreeQuarters, "270", "")];
+}
+
 impl Turn {
     /// How many times 90 degrees.
     pub(crate) fn quarters(self) -> usize {
-        match self {
-            Self::None => 0,
-            Self::Quarter => 1,
-            Self::Half => 2,
-            Self::ThreeQuarters => 3,
-        }
+        self as usize
     }
 
     /// Whether the shown picture's rows are the stored one's columns.

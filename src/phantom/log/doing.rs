@@ -12,7 +12,6 @@
 //! **Contacts** ([`ForceTrajectory::Contacts`](crate::phantom::motion::force::ForceTrajectory::Contacts)): a finger
 //! that makes them of its own accord bends for them as well.
 
-use std::fmt;
 use std::sync::Arc;
 
 use rand::RngExt;
@@ -29,17 +28,10 @@ use crate::phantom::sensor::Touch;
 const STRAIGHTEN_S: f64 = 1.0;
 
 /// Whoever prompts a finger: what it is to do at a time of the log's clock, seconds.
-#[derive(Clone)]
-pub struct Prompting(pub Arc<dyn Fn(f64) -> Touch + Send + Sync>);
-
-impl fmt::Debug for Prompting {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str("Prompting")
-    }
-}
+pub type Prompting = Arc<dyn Fn(f64) -> Touch + Send + Sync>;
 
 /// All that a finger does, ready to be asked often.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(in crate::phantom) struct Doing {
     movement: Movement,
     press: Press,
@@ -56,10 +48,9 @@ impl Doing {
     /// Contacts that would go on after `until_s` are left out, infinity: there are always more.
     pub(in crate::phantom) fn until(options: &LogOptions, until_s: f64) -> Self {
         let usual = Spiral::default();
-        let press = options.force.press();
         Self {
             movement: options.trajectory.movement(),
-            press: if options.touch_from_s.is_some() { press.out_of_rest(usual.soft_s) } else { press },
+            press: options.force.press(options.touch_from_s.map(|_| usual.soft_s)),
             contacts: options.contacts().map(|contacts| Sequence::new(contacts, until_s)),
             touch_from_s: options.touch_from_s,
             rests: matches!(options.trajectory, Trajectory::Rest | Trajectory::Sway { .. }),
@@ -106,20 +97,20 @@ impl Doing {
 
     /// What it is prompted to do, and how far it is straight for touching, from 0 to 1.
     fn prompted(&self, t_s: f64) -> (Touch, f64) {
-        if let Some(Prompting(prompt)) = &self.prompting {
+        if let Some(prompt) = &self.prompting {
             let touch = prompt(t_s);
             let straight = if touch.angles_rad == [0.0; 3] { 1.0 } else { 0.0 };
             return (touch, straight);
         }
         let Some(from_s) = self.touch_from_s else {
-            let touch = Touch { forces_n: self.press.forces_n(t_s), angles_rad: self.movement.angles_rad(t_s) };
+            let touch = Touch { forces_n: (self.press)(t_s), angles_rad: (self.movement)(t_s) };
             return (touch, if self.rests { 1.0 } else { 0.0 });
         };
         let x = ((t_s - from_s) / STRAIGHTEN_S + 1.0).clamp(0.0, 1.0);
         let straight = x * x * (3.0 - 2.0 * x);
         let angles_rad =
-            if straight < 1.0 { self.movement.angles_rad(t_s).map(|angle| (1.0 - straight) * angle) } else { [0.0; 3] };
-        let forces_n = if t_s > from_s { self.press.forces_n(t_s - from_s) } else { [0.0; 3] };
+            if straight < 1.0 { (self.movement)(t_s).map(|angle| (1.0 - straight) * angle) } else { [0.0; 3] };
+        let forces_n = if t_s > from_s { (self.press)(t_s - from_s) } else { [0.0; 3] };
         (Touch { forces_n, angles_rad }, straight)
     }
 }
@@ -174,8 +165,8 @@ mod tests {
         assert_eq!((options.seconds, options.touch_from_s), (120.0, Some(20.0)));
         let mut pressing = |t_s: f64| -doing.touch(t_s).forces_n[2];
         assert!((0..200).all(|k| pressing(0.1 * f64::from(k)) == 0.0) && pressing(20.01) < 1e-3);
-        let random = options.force.press();
-        assert_eq!(doing.touch(50.0).forces_n, random.forces_n(30.0));
+        let random = options.force.press(None);
+        assert_eq!(doing.touch(50.0).forces_n, random(30.0));
     }
 
     #[test]

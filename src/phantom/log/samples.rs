@@ -78,7 +78,7 @@ impl Seen {
             }
             SensorModel::Nail => {
                 let worn = WornSensor::new(options.subject, options.session, &options.places());
-                let mut colour = worn.followed(options.dynamics, movement, start_s);
+                let mut colour = Response::new(&worn.blood(), options.dynamics, movement, start_s);
                 let still = worn.clone();
                 Self {
                     followed: Box::new(move |t_s| worn.volts(&colour.at(t_s))),

@@ -5,6 +5,7 @@
 //! experiments'.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use lunula_predictor::{ForceSpace, RandomForce};
 pub use lunula_predictor::{RELEASE_S, Spiral};
@@ -91,47 +92,27 @@ pub enum ForceTrajectory {
     Contacts(Contacts),
 }
 
-/// A [`ForceTrajectory`] that is ready to be asked often.
-#[derive(Debug, Clone)]
-pub(in crate::phantom) enum Press {
-    None,
-    Spiral(Spiral),
-    Cycles(Cycles, f64),
-    Random(Box<RandomForce>),
-    Presses(Presses),
-}
+/// A [`ForceTrajectory`] that is ready to be asked often: `[Fx, Fy, Fz]` at a time, newtons.
+pub(in crate::phantom) type Press = Arc<dyn Fn(f64) -> [f64; 3] + Send + Sync>;
 
 impl ForceTrajectory {
-    pub(in crate::phantom) fn press(&self) -> Press {
-        match self {
+    /// With `soft_s`, random motion comes out of rest within so many seconds.
+    pub(in crate::phantom) fn press(&self, soft_s: Option<f64>) -> Press {
+        let random = |motion: RandomForce| -> Press {
+            let motion = match soft_s {
+                Some(soft_s) => motion.out_of_rest(soft_s, f64::INFINITY),
+                None => motion,
+            };
+            Arc::new(move |t_s| motion.forces_n(t_s))
+        };
+        match *self {
             // A contact's force goes with its bending: whoever asks for one asks the contacts themselves.
-            Self::None | Self::Contacts(_) => Press::None,
-            Self::Spiral(spiral) => Press::Spiral(*spiral),
-            Self::Presses(presses) => Press::Presses(*presses),
-            Self::Cycles { which, hz } => Press::Cycles(*which, *hz),
-            Self::Random { hz, seed } => Press::Random(Box::new(RandomForce::new(ForceSpace::default(), *hz, *seed))),
-            Self::Even { hz, seed } => Press::Random(Box::new(RandomForce::even(ForceSpace::default(), *hz, *seed))),
-        }
-    }
-}
-
-impl Press {
-    /// The same, but nothing is pressed before time 0; random motion comes out of rest within `soft_s`.
-    pub(in crate::phantom) fn out_of_rest(self, soft_s: f64) -> Self {
-        match self {
-            Self::Random(random) => Self::Random(Box::new(random.out_of_rest(soft_s, f64::INFINITY))),
-            other => other,
-        }
-    }
-
-    /// `[Fx, Fy, Fz]` at `t_s`, newtons.
-    pub(in crate::phantom) fn forces_n(&self, t_s: f64) -> [f64; 3] {
-        match self {
-            Self::None => [0.0; 3],
-            Self::Spiral(spiral) => spiral.forces_n(t_s),
-            Self::Cycles(which, hz) => which.forces_n(*hz, t_s),
-            Self::Random(random) => random.forces_n(t_s),
-            Self::Presses(presses) => presses.forces_n(t_s),
+            Self::None | Self::Contacts(_) => Arc::new(|_| [0.0; 3]),
+            Self::Spiral(spiral) => Arc::new(move |t_s| spiral.forces_n(t_s)),
+            Self::Presses(presses) => Arc::new(move |t_s| presses.forces_n(t_s)),
+            Self::Cycles { which, hz } => Arc::new(move |t_s| which.forces_n(hz, t_s)),
+            Self::Random { hz, seed } => random(RandomForce::new(ForceSpace::default(), hz, seed)),
+            Self::Even { hz, seed } => random(RandomForce::even(ForceSpace::default(), hz, seed)),
         }
     }
 }
@@ -142,18 +123,18 @@ mod tests {
 
     #[test]
     fn forces_stay_within_the_cone_of_friction() {
-        let random = ForceTrajectory::Random { hz: 0.1, seed: 5 }.press();
-        let spiral = ForceTrajectory::Spiral(Spiral::default()).press();
+        let random = ForceTrajectory::Random { hz: 0.1, seed: 5 }.press(None);
+        let spiral = ForceTrajectory::Spiral(Spiral::default()).press(None);
         let mut greatest = 0.0f64;
         for k in 0..4000 {
             for press in [&random, &spiral] {
-                let [fx, fy, fz] = press.forces_n(0.05 * f64::from(k));
+                let [fx, fy, fz] = press(0.05 * f64::from(k));
                 assert!((-3.0..=0.0).contains(&fz) && fx.hypot(fy) <= -0.75 * fz + 1e-12);
             }
-            greatest = greatest.max(-random.forces_n(0.05 * f64::from(k))[2]);
+            greatest = greatest.max(-random(0.05 * f64::from(k))[2]);
         }
         assert!(greatest > 2.4);
-        assert_ne!(random.forces_n(1.0), ForceTrajectory::Random { hz: 0.1, seed: 6 }.press().forces_n(1.0));
+        assert_ne!(random(1.0), ForceTrajectory::Random { hz: 0.1, seed: 6 }.press(None)(1.0));
     }
 
     #[test]
@@ -163,8 +144,8 @@ mod tests {
             (Cycles::Lateral, Some(0), -3.15, -2.85),
             (Cycles::Longitudinal, Some(1), -3.0, -3.0),
         ] {
-            let press = ForceTrajectory::Cycles { which, hz: Cycles::HZ }.press();
-            let all: Vec<[f64; 3]> = (0..=2000).map(|k| press.forces_n(0.05 * f64::from(k))).collect();
+            let press = ForceTrajectory::Cycles { which, hz: Cycles::HZ }.press(None);
+            let all: Vec<[f64; 3]> = (0..=2000).map(|k| press(0.05 * f64::from(k))).collect();
             for axis in 0..3 {
                 let (low, high) =
                     all.iter().fold((f64::MAX, f64::MIN), |(low, high), f| (low.min(f[axis]), high.max(f[axis])));
@@ -180,7 +161,7 @@ mod tests {
             }
             // No finger slips under what it does here.
             assert!(all.iter().all(|f| f[0].hypot(f[1]) <= 0.75 * -f[2] + 1e-12));
-            assert_eq!(press.forces_n(-3.0), press.forces_n(0.0));
+            assert_eq!(press(-3.0), press(0.0));
         }
         let swings = |t_s: f64| Cycles::Lateral.forces_n(Cycles::HZ, t_s)[2] + 3.0;
         assert!((swings(1.3) - swings(11.3)).abs() <= 1e-12 && (swings(0.0) + swings(5.0)).abs() <= 1e-12);
@@ -190,9 +171,9 @@ mod tests {
     #[test]
     fn random_forces_are_those_that_every_log_so_far_was_made_of() {
         // From truth/log.csv of `--force random` and these seeds, as the first version wrote it.
-        let before = ForceTrajectory::Random { hz: 0.1, seed: 3 }.press().forces_n(-0.736_290_583_943_329_6);
+        let before = ForceTrajectory::Random { hz: 0.1, seed: 3 }.press(None)(-0.736_290_583_943_329_6);
         assert_eq!(before, [0.352_079_065_887_657_03, -0.074_672_163_413_782_72, -2.581_476_845_979_117_3]);
-        let now = ForceTrajectory::Random { hz: 0.1, seed: 5 }.press().forces_n(1.357_064_920_219_386_3);
+        let now = ForceTrajectory::Random { hz: 0.1, seed: 5 }.press(None)(1.357_064_920_219_386_3);
         assert_eq!(now, [-0.337_984_698_528_149_16, -0.011_927_929_742_758_973, -0.845_660_617_756_789_6]);
     }
 }

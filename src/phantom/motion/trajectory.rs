@@ -12,7 +12,7 @@ use lunula_predictor::{Bending, RandomBending};
 use serde::Serialize;
 
 use crate::phantom::motion::follow::Follow;
-use crate::phantom::motion::wave::{Wave, random_wave};
+use crate::phantom::motion::wave::random_wave;
 use crate::table::{Table, TableError};
 
 /// Slope of J3 over J2 in free bending.
@@ -120,7 +120,7 @@ impl Trajectory {
     pub fn angles_rad(&self, t_s: f64) -> [f64; 3] {
         match self {
             Self::Given { rows } => given_rad(rows, t_s),
-            other => other.movement().angles_rad(t_s),
+            other => other.movement()(t_s),
         }
     }
 
@@ -146,82 +146,54 @@ impl Trajectory {
 
     /// Ready to be asked often.
     pub(in crate::phantom) fn movement(&self) -> Movement {
-        match self {
-            Self::Eq27 { hz } => Movement::Eq27 { hz: *hz },
-            Self::Free { hz } => Movement::Free { hz: *hz },
-            Self::Followed { prompted, share, seed } => match Follow::new(*share, *seed) {
-                None => prompted.movement(),
-                Some(follow) => Movement::Followed { prompted: Box::new(prompted.movement()), follow },
-            },
-            Self::Random { hz, seed } => {
-                Movement::Random([0, 1, 2].map(|joint| random_wave(*hz, 0.4..4.0, *seed, KIND_TRAJECTORY, joint)))
+        match self.clone() {
+            Self::Eq27 { hz } => {
+                let bending = Bending { hz };
+                Arc::new(move |t_s| coupled(bending.j2_deg(t_s).to_radians(), hz, t_s))
             }
-            Self::Even { hz, seed } => Movement::Even { hz: *hz, bending: RandomBending::new(*hz, 0.0, *seed) },
-            Self::Rest => Movement::Rest,
-            Self::Sway { seed } => {
-                let wave = |hz: f64, index: u32| random_wave(hz, 0.4..4.0, *seed, KIND_SWAY, index);
-                Movement::Sway([wave(SWAY_HZ, 0), wave(SWAY_HZ, 1), wave(SETTLE_HZ, 2)])
-            }
-            Self::Given { rows } => Movement::Given { rows: rows.as_slice().into() },
-        }
-    }
-}
-
-/// A [`Trajectory`] that is ready to be asked often.
-#[derive(Debug, Clone)]
-pub(in crate::phantom) enum Movement {
-    Eq27 {
-        hz: f64,
-    },
-    Free {
-        hz: f64,
-    },
-    Followed {
-        prompted: Box<Movement>,
-        follow: Follow,
-    },
-    /// Of J1, J2, and J3 about its line.
-    Random([Wave; 3]),
-    Even {
-        hz: f64,
-        bending: RandomBending,
-    },
-    Rest,
-    /// Of J1 and J2 within seconds, of J2 within minutes.
-    Sway([Wave; 3]),
-    Given {
-        rows: Arc<[[f64; 4]]>,
-    },
-}
-
-impl Movement {
-    /// J1, J2, J3 at `t_s`, radians.
-    pub(in crate::phantom) fn angles_rad(&self, t_s: f64) -> [f64; 3] {
-        match self {
-            Self::Eq27 { hz } => coupled(Bending { hz: *hz }.j2_deg(t_s).to_radians(), *hz, t_s),
-            Self::Free { hz } => {
+            Self::Free { hz } => Arc::new(move |t_s| {
                 let [flexed, extended] = FREE_DEG;
                 let j2_deg = 0.5 * (flexed + extended) + 0.5 * (flexed - extended) * (TAU * hz * t_s).cos();
                 [J1_HELD_DEG.to_radians(), j2_deg.to_radians(), j3(j2_deg.to_radians(), t_s)]
+            }),
+            Self::Followed { prompted, share, seed } => {
+                let prompted = prompted.movement();
+                match Follow::new(share, seed) {
+                    None => prompted,
+                    Some(follow) => Arc::new(move |t_s| follow.angles_rad(prompted(t_s - follow.late_s(t_s)), t_s)),
+                }
             }
-            Self::Followed { prompted, follow } => {
-                follow.angles_rad(prompted.angles_rad(t_s - follow.late_s(t_s)), t_s)
+            Self::Random { hz, seed } => {
+                let wave = |joint: u32| random_wave(hz, 0.4..4.0, seed, KIND_TRAJECTORY, joint);
+                // Of J1, J2, and J3 about its line.
+                let [first, second, third] = [0, 1, 2].map(wave);
+                Arc::new(move |t_s| {
+                    let j2 = (40.0 + 45.0 * second.at(t_s)).to_radians();
+                    let j1 = (20.0 + 25.0 * first.at(t_s)).to_radians();
+                    [j1, j2, J3_PER_J2 * j2 + 5f64.to_radians() * third.at(t_s)]
+                })
             }
-            Self::Even { hz, bending } => coupled(bending.j2_deg(t_s).to_radians(), *hz, t_s),
-            Self::Random([first, second, third]) => {
-                let j2 = (40.0 + 45.0 * second.at(t_s)).to_radians();
-                let j1 = (20.0 + 25.0 * first.at(t_s)).to_radians();
-                [j1, j2, J3_PER_J2 * j2 + 5f64.to_radians() * third.at(t_s)]
+            Self::Even { hz, seed } => {
+                let bending = RandomBending::new(hz, 0.0, seed);
+                Arc::new(move |t_s| coupled(bending.j2_deg(t_s).to_radians(), hz, t_s))
             }
-            Self::Rest => [0.0; 3],
-            Self::Sway([first, second, slow]) => {
-                let j2 = SWAY_DEG[1] * second.at(t_s) + SWAY_DEG[2] * slow.at(t_s);
-                [SWAY_DEG[0] * first.at(t_s), j2, J3_PER_J2 * j2].map(f64::to_radians)
+            Self::Rest => Arc::new(|_| [0.0; 3]),
+            Self::Sway { seed } => {
+                let wave = |hz: f64, index: u32| random_wave(hz, 0.4..4.0, seed, KIND_SWAY, index);
+                // Of J1 and J2 within seconds, of J2 within minutes.
+                let (first, second, slow) = (wave(SWAY_HZ, 0), wave(SWAY_HZ, 1), wave(SETTLE_HZ, 2));
+                Arc::new(move |t_s| {
+                    let j2 = SWAY_DEG[1] * second.at(t_s) + SWAY_DEG[2] * slow.at(t_s);
+                    [SWAY_DEG[0] * first.at(t_s), j2, J3_PER_J2 * j2].map(f64::to_radians)
+                })
             }
-            Self::Given { rows } => given_rad(rows, t_s),
+            Self::Given { rows } => Arc::new(move |t_s| given_rad(&rows, t_s)),
         }
     }
 }
+
+/// A [`Trajectory`] that is ready to be asked often: J1, J2, J3 at a time, radians.
+pub(in crate::phantom) type Movement = Arc<dyn Fn(f64) -> [f64; 3] + Send + Sync>;
 
 /// J1, J2, J3 of a given trajectory, degrees in `rows` after the time.
 fn given_rad(rows: &[[f64; 4]], t_s: f64) -> [f64; 3] {

@@ -36,26 +36,11 @@ impl Default for RenderOptions {
 
 const KIND_NOISE: u32 = 2;
 
-/// A pixel's level.
-trait Level: Copy + Default + Send {
-    /// `value` times full scale, rounded to the nearest level.
-    fn of(value: f64) -> Self;
-}
-
-impl Level for u8 {
-    fn of(value: f64) -> Self {
-        (value.clamp(0.0, 1.0) * 255.0 + 0.5) as Self
-    }
-}
-
-impl Level for u16 {
-    fn of(value: f64) -> Self {
-        (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as Self
-    }
-}
-
-/// Rows in parallel; each has its own random numbers, so the threads don't show.
-fn levels<L: Level>(scene: &NailScene, options: &RenderOptions) -> Vec<L> {
+/// Rows in parallel; each has its own random numbers, so the threads don't show. `level` rounds a value of 0 to 1.
+fn levels<L>(scene: &NailScene, options: &RenderOptions, level: impl Fn(f64) -> L + Sync) -> Vec<L>
+where
+    L: Copy + Default + Send,
+{
     let field = scene.field();
     let channels = if options.grey { 1..2 } else { 0..3 };
     let width = scene.camera.width as usize;
@@ -66,9 +51,9 @@ fn levels<L: Level>(scene: &NailScene, options: &RenderOptions) -> Vec<L> {
         let mut rng = numbers(options.noise_seed, KIND_NOISE, row as u32);
         for (column, pixel) in levels.chunks_exact_mut(channels.len()).enumerate() {
             let colour = field.colour(column as f64, row as f64);
-            for (level, value) in pixel.iter_mut().zip(&colour[channels.clone()]) {
+            for (into, value) in pixel.iter_mut().zip(&colour[channels.clone()]) {
                 let noise: f64 = if noise_sd > 0.0 { StandardNormal.sample(&mut rng) } else { 0.0 };
-                *level = L::of(value + noise_sd * noise);
+                *into = level((value + noise_sd * noise).clamp(0.0, 1.0));
             }
         }
     });
@@ -78,14 +63,12 @@ fn levels<L: Level>(scene: &NailScene, options: &RenderOptions) -> Vec<L> {
 pub(super) fn render(scene: &NailScene, options: &RenderOptions) -> DynamicImage {
     const FITS: &str = "as many levels as the picture has";
     let (width, height) = (scene.camera.width, scene.camera.height);
+    let eight = || levels(scene, options, |value| (value * 255.0 + 0.5) as u8);
+    let sixteen = || levels(scene, options, |value| (value * 65535.0 + 0.5) as u16);
     match (options.depth, options.grey) {
-        (Depth::Eight, true) => GrayImage::from_raw(width, height, levels(scene, options)).expect(FITS).into(),
-        (Depth::Eight, false) => RgbImage::from_raw(width, height, levels(scene, options)).expect(FITS).into(),
-        (Depth::Sixteen, true) => {
-            ImageBuffer::<Luma<u16>, _>::from_raw(width, height, levels(scene, options)).expect(FITS).into()
-        }
-        (Depth::Sixteen, false) => {
-            ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, levels(scene, options)).expect(FITS).into()
-        }
+        (Depth::Eight, true) => GrayImage::from_raw(width, height, eight()).expect(FITS).into(),
+        (Depth::Eight, false) => RgbImage::from_raw(width, height, eight()).expect(FITS).into(),
+        (Depth::Sixteen, true) => ImageBuffer::<Luma<u16>, _>::from_raw(width, height, sixteen()).expect(FITS).into(),
+        (Depth::Sixteen, false) => ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, sixteen()).expect(FITS).into(),
     }
 }

@@ -88,14 +88,8 @@ impl NailShape {
         x.powf(self.exponent(du, v).0) + y.powf(self.along[usize::from(dv > 0.0)])
     }
 
-    /// Places `[u, v]` around the outline, in order.
-    #[must_use]
-    pub fn outline_places(&self) -> Vec<[f64; 2]> {
-        self.corners()
-    }
-
     /// Corners `[u, v]` on the outline, in order, among them the four places where it touches its box.
-    pub(super) fn corners(&self) -> Vec<[f64; 2]> {
+    pub(in crate::phantom) fn corners(&self) -> Vec<[f64; 2]> {
         (0..CORNERS)
             .map(|k| {
                 let (x, y) = match 4 * k / CORNERS * usize::from((4 * k).is_multiple_of(CORNERS)) {

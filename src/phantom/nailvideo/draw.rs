@@ -1,10 +1,8 @@
 //! A frame's picture: the moved canvas, in the frame's light, with what covers it and the camera's noise.
 
-use rayon::prelude::*;
-
 use super::Scene;
 use super::track::Affine;
-use crate::phantom::video::{Converter, Siting, add_noise};
+use crate::phantom::video::{Siting, add_noise, encoded};
 use crate::video::Picture;
 
 /// The most pixels between two exposures, and the most exposures.
@@ -15,8 +13,6 @@ impl Scene {
     /// A frame's picture, as the encoder gets it.
     #[must_use]
     pub fn picture(&self, frame: usize) -> Picture {
-        let format = self.options.format();
-        let converter = Converter::new(format, &self.options.coding.matrix(), Siting::Left);
         let noise_sd = (self.options.noise / 255.0) as f32;
         let exposures = self.exposures(frame);
         let painted = match &self.other {
@@ -27,8 +23,8 @@ impl Scene {
         let light = self.light.at(time_s, &self.track.at(time_s));
         let held: Vec<_> = self.covers.iter().filter_map(|cover| cover.at(time_s)).collect();
         let share = 1.0 / exposures.len() as f32;
-        let row = |y: usize, rgb: &mut [Vec<f32>; 3]| {
-            let [red, green, blue] = &mut *rgb;
+        encoded(self.options.format(), &self.options.coding.matrix(), Siting::Left, |y, row| {
+            let [red, green, blue] = &mut row.rgb;
             for (x, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
                 let at = [x as f64, y as f64];
                 let mut colour = [0.0f32; 3];
@@ -46,26 +42,8 @@ impl Scene {
                 };
                 (*red, *green, *blue) = (lit(0), lit(1), lit(2));
             }
-            add_noise(rgb, noise_sd, self.options.seed, frame, y);
-            converter.encode(rgb);
-        };
-        let mut picture = Picture::new(format);
-        let (luma, chroma) = picture.planes.split_at_mut(1);
-        let [cb, cr] = chroma else { return picture };
-        let bytes = format.width * format.sample_bytes();
-        let half = bytes / 2;
-        let groups = luma[0].par_chunks_mut(2 * bytes).zip(cb.par_chunks_mut(half)).zip(cr.par_chunks_mut(half));
-        let fresh = || [0, 1].map(|_| [0, 1, 2].map(|_| vec![0.0f32; format.width]));
-        groups.enumerate().for_each_init(fresh, |rows, (group, ((luma, cb), cr))| {
-            for ((k, rgb), luma) in rows.iter_mut().enumerate().zip(luma.chunks_exact_mut(bytes)) {
-                row(2 * group + k, rgb);
-                converter.luma(rgb, luma);
-            }
-            let rows: Vec<_> = rows.iter().collect();
-            converter.chroma(1, &rows, cb);
-            converter.chroma(2, &rows, cr);
-        });
-        picture
+            add_noise(&mut row.rgb, noise_sd, self.options.seed, frame, y);
+        })
     }
 
     /// This frame's pixels to frame 0's plane, one for each exposure.

@@ -10,7 +10,7 @@ use super::{Affine, Faults, NailVideoOptions};
 use crate::nail::{Axis, Positions};
 use crate::phantom::log::{BEFORE_S, Doing, LogScene};
 use crate::phantom::nail::{Background, Blood, Camera, ColourWeights, Light, NailScene, Pose, Subject, numbers};
-use crate::phantom::sensor::{Discs, FollowedColour, Touch, person};
+use crate::phantom::sensor::{Discs, Response, Touch, person};
 use crate::phantom::video::TICKS_PER_S;
 
 const KIND_SCENE: u32 = 45;
@@ -185,7 +185,7 @@ fn moments(options: &NailVideoOptions, log: &LogScene, subject: &Subject) -> Vec
     let mut doing = Doing::new(log.options());
     let mut followed = doing.clone();
     let movement = move |t_s: f64| followed.touch(t_s);
-    let mut colour = FollowedColour::new(&Blood::of(subject), log.options().dynamics, movement, -BEFORE_S);
+    let mut colour = Response::new(&Blood::of(subject), log.options().dynamics, movement, -BEFORE_S);
     let at = |frame: usize| {
         let time_s = time_s(options, frame);
         Moment { touch: doing.touch(time_s), weights: colour.at(time_s) }

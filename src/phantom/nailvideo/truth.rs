@@ -31,7 +31,7 @@ impl Scene {
             // The shares' sum is 1 but for rounding.
             if count == samples.len() { 0.0 } else { (1.0 - share).clamp(0.0, 1.0) }
         };
-        let corners = || self.nail.subject.nail.outline_places().into_iter().map(|[u, v]| seen(u, v));
+        let corners = || self.nail.subject.nail.corners().into_iter().map(|[u, v]| seen(u, v));
         FrameTruth {
             time_s,
             motion: (!cut).then_some(motion),

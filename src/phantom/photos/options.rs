@@ -138,11 +138,8 @@ impl PhotoOptions {
                 self.margin
             ));
         }
-        let scenes = (0..self.subjects).map(|subject| self.scene(subject, self.poses[0]));
-        match scenes.filter_map(|scene| scene.check().err()).next() {
-            Some(fault) => refused(fault.to_string()),
-            None => Ok(()),
-        }
+        let fault = (0..self.subjects).find_map(|subject| self.scene(subject, self.poses[0]).check().err());
+        fault.map_or(Ok(()), |fault| refused(fault.to_string()))
     }
 
     /// The name of subject `index`: `s01`, `s02`, ...

@@ -10,19 +10,6 @@ use crate::phantom::screen::Jump;
 use crate::phantom::sensor::CHANNELS;
 use crate::phantom::video::{Hide, Leave, Oblique};
 use anyhow::Context;
-use clap::ValueEnum;
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum RotateArg {
-    #[value(name = "0")]
-    None,
-    #[value(name = "90")]
-    Quarter,
-    #[value(name = "180")]
-    Half,
-    #[value(name = "270")]
-    ThreeQuarters,
-}
 
 /// A movement by its name or from a table, and how long a table goes on, seconds.
 pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Trajectory, Option<f64>)> {

@@ -2,9 +2,10 @@
 
 use clap::Args;
 
-use super::choices::{RotateArg, parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory};
+use super::choices::{parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory};
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
+use crate::job::one_of;
 use crate::phantom::motion::finger::{Finger, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::video::{Chroma, Coding, Colours, Hide, Leave, Lens, Oblique, Preset, Siting, VideoOptions};
@@ -127,8 +128,8 @@ pub struct VideoRequest {
     #[arg(long, value_enum)]
     stated_siting: Option<Siting>,
     /// The stored picture is turned back by so many degrees, and the file says to turn it clockwise to show it
-    #[arg(long, value_enum, default_value = "0")]
-    rotate: RotateArg,
+    #[arg(long, value_parser = one_of::<Turn>(), default_value = "0")]
+    rotate: Turn,
     /// Chroma of the video: 4:2:0, 4:2:2, 4:4:4, none
     #[arg(long, value_enum, default_value = "420")]
     format: Chroma,
@@ -185,12 +186,7 @@ impl VideoRequest {
         options.matrix.full_range = self.full_range;
         options.siting = self.siting;
         options.stated_siting = self.stated_siting;
-        options.turn = match self.rotate {
-            RotateArg::None => Turn::None,
-            RotateArg::Quarter => Turn::Quarter,
-            RotateArg::Half => Turn::Half,
-            RotateArg::ThreeQuarters => Turn::ThreeQuarters,
-        };
+        options.turn = self.rotate;
         options.chroma = self.format;
         options.depth = self.depth;
         options.crf = self.crf.unwrap_or(options.crf);

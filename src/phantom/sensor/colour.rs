@@ -5,7 +5,7 @@
 //! 0.16 s and 0.12 s, as measured in 4.3; bending with that of [`Photodiode`](super::Photodiode).
 
 use super::photodiode::{BENDING_S, DISTAL_S, PROXIMAL_S};
-use super::{Dynamics, Following, Response, Touch};
+use super::{Following, Response, Touch};
 use crate::phantom::nail::{Blood, ColourWeights, PATTERNS};
 
 /// Distal weights, proximal weights, bending's three.
@@ -30,19 +30,10 @@ impl Following<FOLLOWED> for Blood {
     }
 }
 
-/// A nail's colour that follows a movement.
-pub struct FollowedColour<M>(Response<Blood, M, FOLLOWED>);
-
-impl<M: FnMut(f64) -> Touch> FollowedColour<M> {
-    /// Begins in equilibrium at `start_s`.
-    #[must_use]
-    pub fn new(blood: &Blood, dynamics: Dynamics, movement: M, start_s: f64) -> Self {
-        Self(Response::new(blood, dynamics, movement, start_s))
-    }
-
+impl<M: FnMut(f64) -> Touch> Response<Blood, M, FOLLOWED> {
     /// The zones' weights at `t_s`. Times are asked for in ascending order, none before the start.
     pub fn at(&mut self, t_s: f64) -> ColourWeights {
-        let followed = self.0.followed(t_s);
+        let followed = self.followed(t_s);
         let part = |from: usize| std::array::from_fn(|k| followed[from + k]);
         let bent = std::array::from_fn(|k| followed[2 * PATTERNS + k]);
         ColourWeights::of(part(0), part(PATTERNS), bent)

@@ -34,7 +34,6 @@ mod wander;
 mod worn;
 
 pub use ambient::Ambient;
-pub use colour::FollowedColour;
 pub use discs::Discs;
 pub(in crate::phantom) use discs::disc_samples;
 pub use disturbances::{DisturbanceSizes, Disturbances, Elevation, Pulse};

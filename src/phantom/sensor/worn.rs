@@ -12,7 +12,7 @@
 use rand::RngExt;
 
 use super::photodiode::{KIND_SESSION, PEOPLE, SESSION};
-use super::{CHANNELS, Discs, Dynamics, FollowedColour, Touch};
+use super::{CHANNELS, Discs, Touch};
 use crate::nail::{Axis, Positions};
 use crate::phantom::nail::{Background, Blood, Camera, ColourWeights, Light, NailScene, Pose, Subject, numbers};
 
@@ -78,9 +78,9 @@ impl WornSensor {
         self.volts(&ColourWeights::resting(&self.subject, touch.forces_n, touch.angles_rad))
     }
 
-    /// The nail's colour as it follows a movement from `start_s` on.
-    pub fn followed<M: FnMut(f64) -> Touch>(&self, dynamics: Dynamics, movement: M, start_s: f64) -> FollowedColour<M> {
-        FollowedColour::new(&Blood::of(&self.subject), dynamics, movement, start_s)
+    /// The blood below the nail, whose colour follows.
+    pub(in crate::phantom) fn blood(&self) -> Blood {
+        Blood::of(&self.subject)
     }
 }
 

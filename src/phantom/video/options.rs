@@ -214,12 +214,7 @@ fn matrix_in_words<S: Serializer>(matrix: &Matrix, serializer: S) -> Result<S::O
 }
 
 fn turn_in_words<S: Serializer>(turn: &Turn, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_u32(match turn {
-        Turn::None => 0,
-        Turn::Quarter => 90,
-        Turn::Half => 180,
-        Turn::ThreeQuarters => 270,
-    })
+    serializer.serialize_u32(90 * turn.quarters() as u32)
 }
 
 impl VideoOptions {
@@ -330,10 +325,8 @@ impl VideoOptions {
             Chroma::Full => Some((1, 1)),
             Chroma::None => None,
         };
-        let (width, height) = match self.turn {
-            Turn::None | Turn::Half => (self.width, self.height),
-            Turn::Quarter | Turn::ThreeQuarters => (self.height, self.width),
-        };
+        // A quarter turn back exchanges the sides as one forth does.
+        let (width, height) = self.turn.shown_size((self.width, self.height));
         Format { width, height, subsampling, depth: self.depth }
     }
 

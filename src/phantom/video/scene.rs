@@ -29,8 +29,7 @@ pub struct SceneMarker {
 }
 
 /// How much of a marker is seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarkerStatus {
     /// All of it.
     Ok,

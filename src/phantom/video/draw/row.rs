@@ -2,8 +2,8 @@
 
 /// A row of R'G'B', 0 to 1, and its pixels' places.
 #[derive(Debug, Clone)]
-pub(in crate::phantom::video) struct Row {
-    pub(in crate::phantom::video) rgb: [Vec<f32>; 3],
+pub(in crate::phantom) struct Row {
+    pub(in crate::phantom) rgb: [Vec<f32>; 3],
     pub(in crate::phantom::video) light: Vec<f32>,
 }
 

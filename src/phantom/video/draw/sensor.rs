@@ -82,7 +82,7 @@ pub(in crate::phantom) fn add_noise(rgb: &mut [Vec<f32>; 3], sd: f32, seed: u64,
 }
 
 /// Turns rows of R'G'B' into samples of one row of luma and, for each group of rows, one of chroma.
-pub(in crate::phantom) struct Converter {
+pub(in crate::phantom::video) struct Converter {
     to_ycc: [[f32; 4]; 3],
     matrix: Matrix,
     format: Format,
@@ -92,7 +92,7 @@ pub(in crate::phantom) struct Converter {
 }
 
 impl Converter {
-    pub(in crate::phantom) fn new(format: Format, matrix: &Matrix, siting: Siting) -> Self {
+    pub(in crate::phantom::video) fn new(format: Format, matrix: &Matrix, siting: Siting) -> Self {
         let zero = matrix.from_own_rgb([0.0; 3]);
         let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| matrix.from_own_rgb(unit));
         let to_ycc = std::array::from_fn(|c| {
@@ -104,7 +104,7 @@ impl Converter {
     }
 
     /// A row's ordinary R'G'B', cut to 0..1, as HDR has them; ordinary video leaves them as they are.
-    pub(in crate::phantom) fn encode(&self, [red, green, blue]: &mut [Vec<f32>; 3]) {
+    pub(in crate::phantom::video) fn encode(&self, [red, green, blue]: &mut [Vec<f32>; 3]) {
         if self.matrix.transfer == Transfer::Power {
             return;
         }
@@ -134,14 +134,14 @@ impl Converter {
     }
 
     /// The luma samples of a row.
-    pub(in crate::phantom) fn luma(&self, rgb: &[Vec<f32>; 3], into: &mut [u8]) {
+    pub(in crate::phantom::video) fn luma(&self, rgb: &[Vec<f32>; 3], into: &mut [u8]) {
         let mut values = vec![0.0; self.format.width];
         self.component(0, rgb, &mut values);
         self.store(&values, into);
     }
 
     /// The samples of a row of Cb (`which` 1) or Cr (2) that covers these rows.
-    pub(in crate::phantom) fn chroma(&self, which: usize, rows: &[&[Vec<f32>; 3]], into: &mut [u8]) {
+    pub(in crate::phantom::video) fn chroma(&self, which: usize, rows: &[&[Vec<f32>; 3]], into: &mut [u8]) {
         let width = self.format.width;
         let mut sum = vec![0.0; width];
         let mut one = vec![0.0; width];

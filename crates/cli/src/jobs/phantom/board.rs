@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::phantom::board::{BoardOptions, Scene, write_watched};
 
-use crate::jobs::phantom::{Common, Outcome, watched};
+use crate::jobs::phantom::{Common, Outcome, report, watched};
 
 /// Photographs of a chessboard through a known lens, with the exact lens, corners and poses
 ///
@@ -26,20 +26,11 @@ pub(super) fn run(args: &BoardArgs) -> anyhow::Result<Outcome> {
     let summary = watched(&args.common, "views", "no synthetic board", |watch| -> anyhow::Result<_> {
         Ok(write_watched(&Scene::new(args.options.clone())?, &args.out, watch)?)
     })?;
-    args.common.print_json(&serde_json::json!({
-        "job": "phantom board",
-        "version": env!("CARGO_PKG_VERSION"),
+    let figures = serde_json::json!({
         "options": args.options,
         "views": summary.views,
         "total_s": summary.total_s,
-        "warnings": [],
-    }))?;
-    args.common.say(&format!(
-        "{} views in {}, truth in {}; {:.2} s",
-        summary.views,
-        args.out.display(),
-        args.out.join("truth").display(),
-        summary.total_s
-    ));
-    Ok(Outcome::Done)
+    });
+    let made = format!("{} views in {}", summary.views, args.out.display());
+    report(&args.common, "phantom board", figures, &made, &args.out, summary.total_s, &[])
 }

@@ -8,7 +8,7 @@ use lunula::phantom::log::{LogScene, write};
 use lunula::phantom::request::LogRequest;
 use lunula::phantom::sensor::CHANNELS;
 
-use crate::jobs::phantom::{Common, Outcome};
+use crate::jobs::phantom::{Common, Outcome, report};
 
 /// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
 ///
@@ -40,23 +40,14 @@ pub(super) fn run(args: &LogArgs) -> anyhow::Result<Outcome> {
     if summary.rows == 0 {
         warnings.push("the log has no rows: all were lost".to_owned());
     }
-    args.common.warn(&warnings);
-    args.common.print_json(&serde_json::json!({
-        "job": "phantom log",
-        "version": env!("CARGO_PKG_VERSION"),
+    let total_s = begin.elapsed().as_secs_f64();
+    let figures = serde_json::json!({
         "options": scene.options(),
         "rows": summary.rows,
         "lit": summary.lit,
         "photodiodes": CHANNELS,
-        "stages": { "write_s": summary.write_s, "total_s": begin.elapsed().as_secs_f64() },
-        "warnings": warnings,
-    }))?;
-    args.common.say(&format!(
-        "{} rows in {}, truth in {}; {:.2} s",
-        summary.rows,
-        args.out.join("log.csv").display(),
-        args.out.join("truth").display(),
-        begin.elapsed().as_secs_f64()
-    ));
-    Ok(Outcome::Done)
+        "stages": { "write_s": summary.write_s, "total_s": total_s },
+    });
+    let made = format!("{} rows in {}", summary.rows, args.out.join("log.csv").display());
+    report(&args.common, "phantom log", figures, &made, &args.out, total_s, &warnings)
 }

@@ -7,6 +7,8 @@ mod photos;
 mod study;
 mod video;
 
+use std::path::Path;
+
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use lunula::job::{Said, Watch};
@@ -58,4 +60,23 @@ fn watched<T, E: Into<anyhow::Error>>(
     let made = work(&Watch { said: &Said::default(), stop: &stop, tick: &tick });
     bar.finish_and_clear();
     made.map_err(Into::into).context(what)
+}
+
+/// Reports what was `made`, as `12 views in folder`, with its truth under `out`; `figures` are those of the JSON.
+fn report(
+    common: &Common,
+    job: &str,
+    mut figures: serde_json::Value,
+    made: &str,
+    out: &Path,
+    total_s: f64,
+    warnings: &[String],
+) -> anyhow::Result<Outcome> {
+    common.warn(warnings);
+    figures["job"] = job.into();
+    figures["version"] = env!("CARGO_PKG_VERSION").into();
+    figures["warnings"] = warnings.into();
+    common.print_json(&figures)?;
+    common.say(&format!("{made}, truth in {}; {total_s:.2} s", out.join("truth").display()));
+    Ok(Outcome::Done)
 }

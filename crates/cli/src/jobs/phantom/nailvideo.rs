@@ -6,7 +6,7 @@ use anyhow::Context;
 use clap::Args;
 use lunula::phantom::nailvideo::{NailVideoRequest, Scene, write_watched};
 
-use crate::jobs::phantom::{Common, Outcome, watched};
+use crate::jobs::phantom::{Common, Outcome, report, watched};
 
 /// A video of a fingernail that is pressed, sheared and bent, with exact motion, colour and hidden photodiodes (4.2,
 /// 4.3)
@@ -32,23 +32,14 @@ pub(super) fn run(args: &NailVideoArgs) -> anyhow::Result<Outcome> {
         let summary = write_watched(&scene, &args.out, watch)?;
         Ok((scene, summary))
     })?;
-    args.common.print_json(&serde_json::json!({
-        "job": "phantom nailvideo",
-        "version": env!("CARGO_PKG_VERSION"),
+    let figures = serde_json::json!({
         "options": scene.options(),
         "frames": summary.frames,
         "gone": summary.gone,
         "log_rows": summary.log_rows,
         "bytes": summary.bytes,
         "total_s": summary.total_s,
-        "warnings": [],
-    }))?;
-    args.common.say(&format!(
-        "{} frames in {}, truth in {}; {:.2} s",
-        summary.frames,
-        args.out.join("video.mp4").display(),
-        args.out.join("truth").display(),
-        summary.total_s
-    ));
-    Ok(Outcome::Done)
+    });
+    let made = format!("{} frames in {}", summary.frames, args.out.join("video.mp4").display());
+    report(&args.common, "phantom nailvideo", figures, &made, &args.out, summary.total_s, &[])
 }

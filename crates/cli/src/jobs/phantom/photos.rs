@@ -6,7 +6,7 @@ use clap::Args;
 use lunula::phantom::photos::write_watched;
 use lunula::phantom::request::PhotosRequest;
 
-use crate::jobs::phantom::{Common, Outcome, watched};
+use crate::jobs::phantom::{Common, Outcome, report, watched};
 
 /// Photographs of nails of many shapes, sizes, skin tones and lights, in the eight poses of the thesis (4.2.3-4.2.6)
 ///
@@ -28,20 +28,11 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let summary = watched(&args.common, "photographs", "no synthetic photographs", |watch| {
         write_watched(&options, &args.out, watch)
     })?;
-    args.common.print_json(&serde_json::json!({
-        "job": "phantom photos",
-        "version": env!("CARGO_PKG_VERSION"),
+    let figures = serde_json::json!({
         "options": options,
         "photographs": summary.photographs.len(),
         "stages": summary.stages,
-        "warnings": [],
-    }))?;
-    args.common.say(&format!(
-        "{} photographs in {}, truth in {}; {:.2} s",
-        summary.photographs.len(),
-        args.out.join("photos").display(),
-        args.out.join("truth").display(),
-        summary.stages.total_s
-    ));
-    Ok(Outcome::Done)
+    });
+    let made = format!("{} photographs in {}", summary.photographs.len(), args.out.join("photos").display());
+    report(&args.common, "phantom photos", figures, &made, &args.out, summary.stages.total_s, &[])
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use lunula::phantom::request::VideoRequest;
 use lunula::phantom::video::{Scene, write_watched};
 
-use crate::jobs::phantom::{Common, Outcome, watched};
+use crate::jobs::phantom::{Common, Outcome, report, watched};
 
 /// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
 ///
@@ -38,23 +38,13 @@ pub(super) fn run(args: &VideoArgs) -> anyhow::Result<Outcome> {
         warnings
             .push(format!("only {} of {wanted} distractors found a place apart from the finger", summary.distractors));
     }
-    args.common.warn(&warnings);
-    args.common.print_json(&serde_json::json!({
-        "job": "phantom video",
-        "version": env!("CARGO_PKG_VERSION"),
+    let figures = serde_json::json!({
         "options": scene.options(),
         "frames": summary.frames,
         "seconds": summary.seconds,
         "bytes": summary.bytes,
         "stages": summary.stages,
-        "warnings": warnings,
-    }))?;
-    args.common.say(&format!(
-        "{} frames in {}, truth in {}; {:.2} s",
-        summary.frames,
-        args.out.join("video.mp4").display(),
-        args.out.join("truth").display(),
-        summary.stages.total_s
-    ));
-    Ok(Outcome::Done)
+    });
+    let made = format!("{} frames in {}", summary.frames, args.out.join("video.mp4").display());
+    report(&args.common, "phantom video", figures, &made, &args.out, summary.stages.total_s, &warnings)
 }
