@@ -230,13 +230,5 @@ fn transfer(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -
 }
 
 fn chroma_site(location: Location) -> Option<(f64, f64)> {
-    Some(match location {
-        Location::Unspecified => return None,
-        Location::Left => (0.0, 0.5),
-        Location::Center => (0.5, 0.5),
-        Location::TopLeft => (0.0, 0.0),
-        Location::Top => (0.5, 0.0),
-        Location::BottomLeft => (0.0, 1.0),
-        Location::Bottom => (0.5, 1.0),
-    })
+    pixel::CHROMA_SITES.iter().find(|(known, ..)| *known == location).map(|(.., site)| *site)
 }

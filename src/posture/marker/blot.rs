@@ -332,11 +332,7 @@ impl Window {
         let (mut ground, mut level) = ([median(&mut far)?, 0.0, 0.0], 1.0);
         let mut drawn: Option<Drawn> = None;
         for _ in 0..ROUNDS {
-            let rest = |k: usize| {
-                let (x, y) = ((k % self.width) as f32, (k / self.width) as f32);
-                along[k] - ground[0] - ground[1] * x - ground[2] * y
-            };
-            let share: Vec<f32> = (0..along.len()).map(|k| rest(k) / level).collect();
+            let share: Vec<f32> = (0..along.len()).map(|k| self.above(&ground, &along, k) / level).collect();
             let inside = self.component(&share, near_px, radius_px)?;
             let depth = self.depth(&inside);
             let at = |side: usize, k: usize| match side {
@@ -354,16 +350,18 @@ impl Window {
             if let Some(plane) = self.ground(&along, &one) {
                 ground = plane;
             }
-            let rest = |k: usize| {
-                let (x, y) = ((k % self.width) as f32, (k / self.width) as f32);
-                along[k] - ground[0] - ground[1] * x - ground[2] * y
-            };
+            let rest = |k: usize| self.above(&ground, &along, k);
             let deepest = one.depth.iter().copied().max()?.min(EDGE_PX as i8 + 1);
             let mut core: Vec<f32> = (0..along.len()).filter(|&k| one.depth[k] >= deepest).map(rest).collect();
             level = median(&mut core).filter(|&level| level > 0.1)?;
             drawn = Some(one);
         }
         drawn
+    }
+
+    /// How far sample `k` is above the ground of this level and these slopes along x and y.
+    fn above(&self, ground: &[f32; 3], along: &[f32], k: usize) -> f32 {
+        along[k] - ground[0] - ground[1] * (k % self.width) as f32 - ground[2] * (k / self.width) as f32
     }
 
     /// The surround's level and slopes along x and y, outliers (other skin, what lies behind) left out.
@@ -373,9 +371,7 @@ impl Window {
         let mut plane = [median(&mut values)?, 0.0, 0.0];
         let scale = 1.0 / self.width.max(self.height) as f64;
         for _ in 0..ROUNDS {
-            let off = |k: usize| {
-                along[k] - plane[0] - plane[1] * (k % self.width) as f32 - plane[2] * (k / self.width) as f32
-            };
+            let off = |k: usize| self.above(&plane, along, k);
             let mut offs: Vec<f32> = around.iter().map(|&k| off(k).abs()).collect();
             let wide = (3.0 * median(&mut offs)?).max(0.05);
             // A weak prior holds the slopes: a surround seen on one side only has none to speak of.

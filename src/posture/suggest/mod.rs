@@ -17,7 +17,7 @@ use order::{path, row, total_turn};
 use super::marker::blot::Blot;
 use super::track::loose_look;
 use crate::posture::marker::looks::siting::Siting;
-use crate::posture::survey::find::{Blob, Finder, Paint};
+use crate::posture::survey::find::{Blob, Finder, Paint, distance};
 use crate::posture::survey::naming::Point;
 use crate::video::{Frame, Info};
 
@@ -144,7 +144,7 @@ impl<'a> Suggester<'a> {
         let restless = |end: &Mark| -> f64 {
             let moves = frames.iter().filter_map(|marks| {
                 let nearest = marks.iter().filter(|mark| mark.colour == end.colour);
-                nearest.map(|mark| order::distance(mark.at_px, end.at_px)).min_by(f64::total_cmp)
+                nearest.map(|mark| distance(mark.at_px, end.at_px)).min_by(f64::total_cmp)
             });
             moves.sum()
         };
@@ -155,7 +155,7 @@ impl<'a> Suggester<'a> {
         let hand = marks[0].at_px;
         let turns = rows.iter().filter(|row| row.len() == marks.len() && row.len() > 2).map(|row| {
             let mut other = path(row);
-            if order::distance(other[0].at_px, hand) > order::distance(other[other.len() - 1].at_px, hand) {
+            if distance(other[0].at_px, hand) > distance(other[other.len() - 1].at_px, hand) {
                 other.reverse();
             }
             total_turn(&other)
@@ -180,7 +180,7 @@ impl<'a> Suggester<'a> {
         let moves = rows[best].iter().any(|mark| {
             let others = rows.iter().filter(|row| row.len() == rows[best].len()).filter_map(|row| {
                 let of_colour = row.iter().filter(|other| other.colour == mark.colour);
-                of_colour.map(|other| order::distance(other.at_px, mark.at_px)).min_by(f64::total_cmp)
+                of_colour.map(|other| distance(other.at_px, mark.at_px)).min_by(f64::total_cmp)
             });
             others.fold(0.0, f64::max) > mark.radius_px
         });
@@ -204,7 +204,7 @@ impl<'a> Suggester<'a> {
                     continue;
                 }
                 let same = |other: &&mut Candidate| {
-                    order::distance(other.at_px, one.at_px) < 0.7 * other.radius_px.max(one.radius_px)
+                    distance(other.at_px, one.at_px) < 0.7 * other.radius_px.max(one.radius_px)
                 };
                 match spots.iter_mut().find(same) {
                     Some(other) if other.contrast < one.contrast => *other = one,

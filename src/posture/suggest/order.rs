@@ -2,6 +2,7 @@
 
 use super::{BLOT_SIZE_FACTOR, Mark, SIZE_FACTOR};
 use crate::median::median_of;
+use crate::posture::survey::find::distance;
 
 /// Rows of more markers than this are ordered from one end by the nearest next one.
 const MOST_EXACT: usize = 12;
@@ -121,8 +122,4 @@ pub(super) fn total_turn(marks: &[Mark]) -> f64 {
         (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
     };
     marks.windows(3).map(turn).sum()
-}
-
-pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::Mark;
-use super::order::distance;
+use crate::posture::survey::find::distance;
 use crate::video::Info;
 
 /// The finger bends enough to tell which way.

@@ -8,7 +8,7 @@
 use super::{SurveyError, Surveyor};
 use crate::median::median_of;
 use crate::posture::suggest::{hex, palette};
-use crate::posture::survey::find::{Blob, Paint};
+use crate::posture::survey::find::{Blob, Paint, distance};
 use crate::video::Frame;
 
 /// A spot further from its place than this many radii, or this share of the picture's diagonal, is not meant ...
@@ -137,8 +137,4 @@ fn colour_at(frame: &Frame<'_>, at: [f64; 2]) -> [f64; 3] {
 
 fn median(colours: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|p| median_of(colours.iter().map(|colour| colour[p])).unwrap_or(f64::NAN))
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }

@@ -2,7 +2,7 @@
 
 use super::{LEAST_FRAMES, Surveyor};
 use crate::posture::layout::Segment;
-use crate::posture::survey::find::Paint;
+use crate::posture::survey::find::{Paint, distance};
 use crate::posture::survey::naming::{MARGIN, Naming, Point, Scene, colour_cost, rigid_cost};
 
 /// A naming seen in one frame costs half of this; in more frames, less.
@@ -189,7 +189,7 @@ fn update(hypothesis: &mut Hypothesis, scene: &Scene<'_>) {
     for (place, link) in scene.chain.links.iter().enumerate() {
         let at = |place: usize| hypothesis.naming[place].and_then(|spot| scene.points[spot]);
         if let (Some(here), Some(before)) = (at(place), link.before.and_then(at)) {
-            let length = (here.at_px[0] - before.at_px[0]).hypot(here.at_px[1] - before.at_px[1]);
+            let length = distance(here.at_px, before.at_px);
             let span = &mut hypothesis.spans[place];
             *span = (span.0.min(length), span.1.max(length));
         }

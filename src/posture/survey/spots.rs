@@ -6,7 +6,7 @@ use super::super::marker::centre::{Scratch, centre};
 use super::super::track::loose_look;
 use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::looks::siting::{Siting, SitingEvidence};
-use crate::posture::survey::find::{Area, Blob, Finder, Paint};
+use crate::posture::survey::find::{Area, Blob, Finder, Paint, distance};
 use crate::posture::survey::naming::Point;
 use crate::video::Frame;
 
@@ -44,6 +44,10 @@ pub(super) struct Spot {
 }
 
 impl Spot {
+    fn new(frame: u64, blob: &Blob, paints: Vec<bool>) -> Self {
+        Self { points: vec![Point::new(frame, blob)], look: None, as_blot: None, paints, velocity_px: [0.0; 2] }
+    }
+
     pub(super) fn last(&self) -> &Point {
         // A spot starts with a point and loses none.
         &self.points[self.points.len() - 1]
@@ -147,7 +151,7 @@ impl Spots {
     fn link(&mut self, frame: &Frame<'_>, mut candidates: Vec<Candidate>, whole: bool) {
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for (number, spot) in self.all.iter().enumerate().filter(|(_, spot)| spot.is_followed(frame.index)) {
-            let [x, y] = spot.expected_px(frame.index);
+            let expected_px = spot.expected_px(frame.index);
             let radius = spot.last().radius_px;
             let speed = spot.velocity_px[0].hypot(spot.velocity_px[1]);
             // A spot seen once may have any velocity.
@@ -155,7 +159,7 @@ impl Spots {
             let gap = ((frame.index - spot.last().frame) as f64).sqrt();
             let reach = free * radius * gap + 0.6 * speed + 3.0;
             for (index, candidate) in candidates.iter().enumerate() {
-                let distance = (candidate.blob.at_px[0] - x).hypot(candidate.blob.at_px[1] - y);
+                let distance = distance(candidate.blob.at_px, expected_px);
                 let growth = (candidate.blob.radius_px() / radius).ln().abs();
                 let related = candidate.paints.iter().zip(&spot.paints).any(|(a, b)| *a && *b);
                 if related && distance < reach && growth < 0.35 {
@@ -190,13 +194,7 @@ impl Spots {
         for candidate in candidates {
             if followed < MOST {
                 followed += 1;
-                self.all.push(Spot {
-                    points: vec![Point::new(frame.index, &candidate.blob)],
-                    look: None,
-                    as_blot: None,
-                    paints: candidate.paints,
-                    velocity_px: [0.0; 2],
-                });
+                self.all.push(Spot::new(frame.index, &candidate.blob, candidate.paints));
             }
         }
     }
@@ -209,13 +207,8 @@ impl Spots {
 
     /// The number of a new spot at a place of the first frame, of this one of so many paints.
     pub(super) fn start(&mut self, frame: &Frame<'_>, blob: &Blob, paint: usize, paints: usize) -> usize {
-        self.all.push(Spot {
-            points: vec![Point::new(frame.index, blob)],
-            look: None,
-            as_blot: None,
-            paints: (0..paints).map(|number| number == paint).collect(),
-            velocity_px: [0.0; 2],
-        });
+        let paints = (0..paints).map(|number| number == paint).collect();
+        self.all.push(Spot::new(frame.index, blob, paints));
         self.all.len() - 1
     }
 
@@ -232,7 +225,7 @@ impl Spots {
         for paint in paints {
             self.finder.find(frame, paint, &mut self.found);
             for blob in &self.found {
-                let off = (blob.at_px[0] - at[0]).hypot(blob.at_px[1] - at[1]);
+                let off = distance(blob.at_px, at);
                 if off < reach_px.min(1.2 * blob.radius_px() + 2.0)
                     && blob.contrast >= LEAST_CONTRAST
                     && best.is_none_or(|other| other.contrast < blob.contrast)
@@ -305,12 +298,12 @@ fn is_disc(disc: &Look, blot: &Look) -> bool {
 
 /// Whether a blob is only a part of a larger one that stands out more.
 fn lies_in(part: &Blob, whole: &Blob) -> bool {
-    let distance = (part.at_px[0] - whole.at_px[0]).hypot(part.at_px[1] - whole.at_px[1]);
+    let distance = distance(part.at_px, whole.at_px);
     part.radius_px() < whole.radius_px() && distance < whole.radius_px() && part.contrast < 0.8 * whole.contrast
 }
 
 fn is_same(a: &Blob, b: &Blob) -> bool {
-    let distance = (a.at_px[0] - b.at_px[0]).hypot(a.at_px[1] - b.at_px[1]);
+    let distance = distance(a.at_px, b.at_px);
     let growth = (a.radius_px() / b.radius_px()).ln().abs();
     distance < 0.6 * a.radius_px().min(b.radius_px()) && growth < 0.5
 }

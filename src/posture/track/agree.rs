@@ -3,6 +3,7 @@
 
 use super::target::Target;
 use crate::posture::marker::sight::Loss;
+use crate::posture::survey::find::distance;
 use crate::posture::survey::naming::{LENGTH_FREE_PX, LENGTH_SHARE};
 
 /// A naming of two markers must be better than the other way round by this.
@@ -23,6 +24,11 @@ impl Rod {
     fn seen_px(&self, targets: &[Target]) -> Option<f64> {
         let [a, b] = self.ends.map(|end| targets[end].fit.as_ref().map(|fit| fit.centre.at_px));
         Some(distance(a?, b?))
+    }
+
+    /// Its other end.
+    pub(super) fn other(&self, end: usize) -> usize {
+        if self.ends[0] == end { self.ends[1] } else { self.ends[0] }
     }
 
     /// Whether it can be as long as this.
@@ -109,8 +115,7 @@ fn misfit(targets: &[Target], rods: &[Rod], index: usize, at: [f64; 2], not: usi
         0.3 * target.radius_px() + 1.0 + 0.3 * target.speed_px() + 0.3 * (target.reach_px() - 1.5 * target.radius_px());
     let mut cost = 0.5 * (distance(at, target.expected_px) / scale).powi(2).min(40.0);
     for rod in rods.iter().filter(|rod| rod.ends.contains(&index) && !rod.ends.contains(&not)) {
-        let other = if rod.ends[0] == index { rod.ends[1] } else { rod.ends[0] };
-        if let (Some(length), Some(fit)) = (rod.length_px, &targets[other].fit) {
+        if let (Some(length), Some(fit)) = (rod.length_px, &targets[rod.other(index)].fit) {
             let off = distance(at, fit.centre.at_px) - length;
             cost += 0.5 * (off / (0.03 * length + 1.0)).powi(2).min(40.0);
         }
@@ -124,8 +129,4 @@ fn surprise(target: &Target) -> f64 {
         let certain = if target.absent == 0 { 1.0 } else { 3.0 };
         certain * (0.1 + distance(fit.centre.at_px, target.expected_px) / target.reach_px())
     })
-}
-
-pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }

@@ -13,7 +13,7 @@ mod target;
 
 pub(crate) use loose::look as loose_look;
 
-use agree::{Rod, distance};
+use agree::Rod;
 use target::Target;
 
 use super::layout::{Layout, MarkerShape};
@@ -23,7 +23,7 @@ use super::marker::method::{Method, Search};
 use super::marker::sight::{Loss, Sight};
 use super::survey::{Start, Survey};
 use crate::posture::marker::looks::siting::Siting;
-use crate::posture::survey::find::{Area, Blob, Finder, Paint};
+use crate::posture::survey::find::{Area, Blob, Finder, Paint, distance};
 use crate::posture::survey::naming::{Chain, lone};
 use crate::video::{Frame, Info};
 
@@ -315,10 +315,11 @@ impl Tracker {
     /// Whether a marker can be at a place as far as its segments and the other markers' places tell.
     fn suits(&self, marker: usize, at: [f64; 2]) -> bool {
         let place = |marker: usize| self.targets[marker].fit.as_ref().map(|fit| fit.centre.at_px);
-        let rods_hold = self.rods.iter().filter(|rod| rod.ends.contains(&marker)).all(|rod| {
-            let other = if rod.ends[0] == marker { rod.ends[1] } else { rod.ends[0] };
-            place(other).is_none_or(|end| rod.can_be(distance(at, end)))
-        });
+        let rods_hold = self
+            .rods
+            .iter()
+            .filter(|rod| rod.ends.contains(&marker))
+            .all(|rod| place(rod.other(marker)).is_none_or(|end| rod.can_be(distance(at, end))));
         let radius = self.targets[marker].radius_px();
         rods_hold
             && (0..self.targets.len())

@@ -3,14 +3,14 @@
 //! The lost ones are named together, by the same costs as in the survey, among the blobs that are no marker yet, the
 //! markers seen being given; what another naming fills otherwise, about as well, is not taken.
 
-use super::agree::{LOOSE, distance};
+use super::agree::LOOSE;
 use super::target::Target;
 use super::{Tracker, loose};
 use crate::posture::marker::centre::{Scratch, centre};
 use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::looks::siting::Siting;
 use crate::posture::marker::sight::Loss;
-use crate::posture::survey::find::{Area, Blob, Paint};
+use crate::posture::survey::find::{Area, Blob, Paint, distance};
 use crate::posture::survey::naming::{MARGIN, MISSING, Point, Scene, colour_cost};
 use crate::video::Frame;
 
@@ -134,8 +134,7 @@ impl Tracker {
         let target = &self.targets[marker];
         let radius = self.typical_radius_px(marker);
         for rod in self.rods.iter().filter(|rod| rod.ends.contains(&marker)) {
-            let other = if rod.ends[0] == marker { rod.ends[1] } else { rod.ends[0] };
-            if let (Some(length), Some(fit)) = (rod.length_px, &self.targets[other].fit) {
+            if let (Some(length), Some(fit)) = (rod.length_px, &self.targets[rod.other(marker)].fit) {
                 return Some(Area::about(fit.centre.at_px, 1.2 * length + 4.0 * radius));
             }
         }

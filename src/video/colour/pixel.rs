@@ -1,9 +1,21 @@
 //! FFmpeg's pixel formats and ours: planar Y'CbCr and grey are taken as they are, all others have a nearest of those.
 
 use ffmpeg::format::Pixel;
+use ffmpeg::util::chroma::Location;
 use ffmpeg_next as ffmpeg;
 
 use crate::video::Format;
+
+/// FFmpeg's places of chroma samples, by its number and its name, and ours: in luma samples right of and below the
+/// block's first luma sample.
+pub(in crate::video) const CHROMA_SITES: [(Location, &str, (f64, f64)); 6] = [
+    (Location::Left, "left", (0.0, 0.5)),
+    (Location::Center, "center", (0.5, 0.5)),
+    (Location::TopLeft, "topleft", (0.0, 0.0)),
+    (Location::Top, "top", (0.5, 0.0)),
+    (Location::BottomLeft, "bottomleft", (0.0, 1.0)),
+    (Location::Bottom, "bottom", (0.5, 1.0)),
+];
 
 /// Subsampling (none for grey) and bits of a format whose planes can be read as they are.
 pub(in crate::video) fn planar(pixel: Pixel) -> Option<(Option<(usize, usize)>, u32)> {

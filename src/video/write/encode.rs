@@ -266,16 +266,8 @@ fn options(encoding: &Encoding) -> Dictionary<'static> {
     if let Some(pictures) = encoding.key_every {
         options.set("g", &pictures.to_string());
     }
-    let site = match encoding.chroma_site {
-        Some((0.0, 0.5)) => "left",
-        Some((0.5, 0.5)) => "center",
-        Some((0.0, 0.0)) => "topleft",
-        Some((0.5, 0.0)) => "top",
-        Some((0.0, 1.0)) => "bottomleft",
-        Some((0.5, 1.0)) => "bottom",
-        _ => "unknown",
-    };
-    options.set("chroma_sample_location", site);
+    let site = pixel::CHROMA_SITES.iter().find(|(.., site)| Some(*site) == encoding.chroma_site);
+    options.set("chroma_sample_location", site.map_or("unknown", |(_, name, _)| name));
     options
 }
 

@@ -51,6 +51,11 @@ impl Blob {
     }
 }
 
+/// How far apart two places are.
+pub(in crate::posture) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
 /// Looks for spots; keeps its working memory from one search to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Finder {
