@@ -61,7 +61,7 @@ fn run_middle(run: &Run) -> f32 {
 }
 
 fn tall(run: &Run) -> f64 {
-    (run.bottom - run.top + 1) as f64
+    run.height() as f64
 }
 
 /// A crop and the line of the digits in it.
@@ -188,7 +188,7 @@ impl<'a> Scene<'a> {
         let slack = (UNEVEN * self.height).max(1.5);
         (run.top as f64 - self.top).abs() <= slack
             && ((run.bottom + 1) as f64 - self.bottom).abs() <= slack
-            && (run.right - run.left + 1) as f64 <= WIDEST * self.height
+            && run.width() as f64 <= WIDEST * self.height
     }
 
     /// Whether the crop's edge cuts a run off.
@@ -211,7 +211,7 @@ impl<'a> Scene<'a> {
         let slack = (UNEVEN * self.height).max(1.5);
         let [up, down] = [self.top - run.top as f64, (run.bottom + 1) as f64 - self.bottom];
         let most = OLD_STYLE * self.height;
-        let wide = (run.right - run.left + 1) as f64;
+        let wide = run.width() as f64;
         (-slack..=most).contains(&up)
             && (-most..=most).contains(&down)
             && up.min(down) <= (BEYOND_BOTH * self.height).max(1.0)
@@ -222,20 +222,14 @@ impl<'a> Scene<'a> {
 
     /// How probably the network finds no digit in a run.
     fn other(&self, run: &Run) -> f64 {
-        let ink = Cut {
-            left: run.left as f32,
-            top: run.top as f32,
-            width: (run.right - run.left + 1) as f32,
-            height: (run.bottom - run.top + 1) as f32,
-        };
-        self.page.get_or_init(|| Page::new(self.gray)).judge(ink, self.cells.levels).other
+        self.page.get_or_init(|| Page::new(self.gray)).judge(Cut::around(run), self.cells.levels).other
     }
 
     /// The mark that a run can be: a colon, a dot, a quote.
     fn mark(&self, run: &Run) -> Option<char> {
         let middle = 0.5 * (self.top + self.bottom);
         let (top, bottom) = (run.top as f64, (run.bottom + 1) as f64);
-        if (run.right - run.left + 1) as f64 > MARK * self.height {
+        if run.width() as f64 > MARK * self.height {
             return None;
         }
         if tall(run) <= MARK * self.height {

@@ -41,13 +41,11 @@ pub(in crate::clock) enum Word {
 /// What a word of these runs, from the left to the right, is, if it is AM or PM; `other` is how probably the network
 /// finds no digit in a run.
 pub(in crate::clock) fn word(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Run) -> f64) -> Option<Word> {
-    let tall = |run: &Run| run.bottom - run.top + 1;
-    let wide = |run: &Run| run.right - run.left + 1;
-    let most = word.iter().map(tall).max().filter(|&most| most >= LEAST_HEIGHT)?;
-    let letters: Vec<Run> = word.iter().filter(|run| tall(run) as f64 > DOT * most as f64).copied().collect();
+    let most = word.iter().map(Run::height).max().filter(|&most| most >= LEAST_HEIGHT)?;
+    let letters: Vec<Run> = word.iter().filter(|run| run.height() as f64 > DOT * most as f64).copied().collect();
     let [first, second] = match letters[..] {
-        [first, second] if tall(&first).min(tall(&second)) as f64 >= UNLIKE * most as f64 => [first, second],
-        [both] if (TOUCHING[0]..=TOUCHING[1]).contains(&(wide(&both) as f64 / tall(&both) as f64)) => {
+        [first, second] if first.height().min(second.height()) as f64 >= UNLIKE * most as f64 => [first, second],
+        [both] if (TOUCHING[0]..=TOUCHING[1]).contains(&(both.width() as f64 / both.height() as f64)) => {
             part(gray, both, levels)?
         }
         _ => return None,
@@ -55,7 +53,7 @@ pub(in crate::clock) fn word(gray: &Gray, word: &[Run], levels: Levels, other: i
     let letter = Letter::new(gray, second, levels)?;
     let is_m = letter.covers([0.0, 0.38], [0.15, 0.85]) >= COVERED
         && letter.covers([0.62, 1.0], [0.15, 0.85]) >= COVERED
-        && wide(&second) as f64 >= NARROWEST_M * tall(&second) as f64
+        && second.width() as f64 >= NARROWEST_M * second.height() as f64
         && other(&second) >= NO_DIGIT;
     let half = Letter::new(gray, first, levels)?.half();
     is_m.then(|| half.map_or(Word::Unclear, Word::Half))
@@ -63,7 +61,7 @@ pub(in crate::clock) fn word(gray: &Gray, word: &[Run], levels: Levels, other: i
 
 /// Two letters that touch.
 fn part(gray: &Gray, both: Run, levels: Levels) -> Option<[Run; 2]> {
-    let width = (both.right - both.left + 1) as f64;
+    let width = both.width() as f64;
     let column = |x: usize| -> f32 { (both.top..=both.bottom).map(|y| ink(gray.row(y)[x], levels)).sum() };
     let [from, to] = PARTING.map(|share| both.left + (share * width) as usize);
     let at = (from..=to.min(both.right)).min_by(|&a, &b| column(a).total_cmp(&column(b)))?;
@@ -76,8 +74,7 @@ fn part(gray: &Gray, both: Run, levels: Levels) -> Option<[Run; 2]> {
         Some(Run { left, right, top, bottom, area: both.area })
     };
     let [first, second] = [tight(both.left, at.checked_sub(1)?)?, tight(at + 1, both.right)?];
-    let tall = |run: &Run| run.bottom - run.top + 1;
-    (tall(&first).min(tall(&second)) >= LEAST_HEIGHT).then_some([first, second])
+    (first.height().min(second.height()) >= LEAST_HEIGHT).then_some([first, second])
 }
 
 /// How much ink covers a sample.

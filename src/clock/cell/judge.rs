@@ -1,7 +1,7 @@
 //! The network's word on a digit in a crop.
 
 use super::look::Cut;
-use crate::clock::glyph::{Levels, Patch, Place, Scores, recognise};
+use crate::clock::glyph::{Levels, Patch, Scores, recognise};
 use crate::clock::ink::crop::Gray;
 use crate::video::Plane;
 
@@ -26,9 +26,9 @@ impl Page {
     pub(in crate::clock) fn judge(&self, ink: Cut, levels: Levels) -> Scores {
         let plane =
             Plane { width: self.width, height: self.height, stride: 2 * self.width, depth: DEPTH, data: &self.bytes };
-        // A box's edges lie between samples, a place's zero on the first one's centre.
+        // A cut's edges lie between samples, an ink box's zero on the first one's centre.
         let [left, top] = [ink.left, ink.top].map(|edge| f64::from(edge) - 0.5);
-        let place = Place::upright([left, top, left + f64::from(ink.width), top + f64::from(ink.height)]);
-        recognise(&Patch::cut(&plane, &place, levels))
+        let ink = [left, top, left + f64::from(ink.width), top + f64::from(ink.height)];
+        recognise(&Patch::cut(&plane, ink, levels))
     }
 }

@@ -8,6 +8,7 @@
 //! 6 against 3 µs (`cargo test --lib opencv_looks -- --nocapture`).
 
 use crate::clock::ink::crop::Gray;
+use crate::clock::ink::pieces::Piece;
 
 /// Columns and rows of the grid.
 pub(in crate::clock) const COLUMNS: usize = 12;
@@ -22,6 +23,13 @@ pub(in crate::clock) struct Cut {
     pub(in crate::clock) top: f32,
     pub(in crate::clock) width: f32,
     pub(in crate::clock) height: f32,
+}
+
+impl Cut {
+    /// The box of a piece of ink.
+    pub(in crate::clock) fn around(ink: &Piece) -> Self {
+        Self { left: ink.left as f32, top: ink.top as f32, width: ink.width() as f32, height: ink.height() as f32 }
+    }
 }
 
 /// A digit's look.

@@ -1,6 +1,6 @@
 //! One digit's picture: a digit or none, and how probable it is.
 //!
-//! In: a [`Patch`], cut out of a plane at the box of the character's ink ([`Place`]) with what background and ink are
+//! In: a [`Patch`], cut out of a plane at the box of the character's ink ([`InkBox`]) with what background and ink are
 //! worth there ([`Levels`]). Out: [`Scores`], the probability of each digit and of anything else. Printed and screen
 //! typefaces, proportional or monospaced, and seven-segment displays are read alike; only digits that stand about
 //! upright (10 degrees) are known. [`read_crop`] finds the ink by itself on a picture of one digit.
@@ -9,19 +9,17 @@
 //! part, a segment that is neither lit nor dark, marks, letters and blanks are *other*. A segment that is wholly gone
 //! can't be detected: a covered 8 may show a clean 9.
 //!
-//! The way down, a file each: [`place`] where it is; [`patch`] the picture in the character's own frame; [`net`] the
-//! small network that weighs it; [`scores`] its answers; [`crop`] the ink on a whole picture. `crates/training`
-//! makes the weights from drawn digits alone.
+//! The way down, a file each: [`patch`] the picture in the character's own frame; [`net`] the small network that weighs
+//! it; [`scores`] its answers; [`crop`] the ink on a whole picture. `crates/training` makes the weights from drawn digits
+//! alone.
 
 mod crop;
 mod net;
 mod patch;
-mod place;
 mod scores;
 
 pub use crop::read_crop;
-pub use patch::{Levels, Patch};
-pub use place::Place;
+pub use patch::{InkBox, Levels, Patch};
 pub use scores::{SURE, Scores};
 
 use net::Net;

@@ -125,14 +125,9 @@ impl Net {
     /// How probably a patch shows each digit.
     #[must_use]
     pub fn scores(&self, patch: &Patch) -> Scores {
-        Scores::of(self.answers(patch))
-    }
-
-    /// The answers for a patch.
-    fn answers(&self, patch: &Patch) -> [f32; ANSWERS] {
         let mut trace = Trace::default();
         self.follow(patch, &mut trace);
-        trace.answers
+        Scores::of(trace.answers)
     }
 
     /// The same with every value on the way. A trace may be used again.
@@ -229,7 +224,9 @@ mod tests {
         let hidden: Vec<f32> = (0..HIDDEN)
             .map(|u| (b3[u] + flat.iter().enumerate().map(|(k, v)| v * w3[k * HIDDEN + u]).sum::<f32>()).max(0.0))
             .collect();
-        for (a, answer) in net.answers(&patch).into_iter().enumerate() {
+        let mut trace = Trace::default();
+        net.follow(&patch, &mut trace);
+        for (a, answer) in trace.answers.into_iter().enumerate() {
             let expected = b4[a] + hidden.iter().enumerate().map(|(k, v)| v * w4[k * ANSWERS + a]).sum::<f32>();
             // Sums of up to 577 terms in another order: 1e-6 apart.
             assert!((answer - expected).abs() <= 1e-4 * (1.0 + expected.abs()), "{a}: {answer} {expected}");

@@ -43,13 +43,6 @@ impl Scores {
         }
         best
     }
-
-    /// The digit, if one is at least as probable as [`SURE`], and how probable the likeliest digit is.
-    #[must_use]
-    pub fn best(&self) -> (Option<u8>, f64) {
-        let (digit, probability) = self.likeliest();
-        ((probability >= SURE).then_some(digit), probability)
-    }
 }
 
 #[cfg(test)]
@@ -64,13 +57,11 @@ mod tests {
         let scores = Scores::of(answers);
         assert!((scores.digits.iter().sum::<f64>() + scores.other - 1.0).abs() <= 1e-12);
         assert!((scores.digits[7] / scores.other - 6f64.exp()).abs() <= 1e-6);
-        assert_eq!(scores.best().0, Some(7));
+        assert!(matches!(scores.likeliest(), (7, probability) if probability >= SURE));
         answers[10] = 7.0;
-        let (digit, probability) = Scores::of(answers).best();
-        assert_eq!(digit, None);
-        assert!(probability < SURE && probability > 0.7);
-        let (digit, probability) = Scores::of(answers).with_other_rarer(0.1).best();
-        assert_eq!(digit, Some(7));
+        assert!(matches!(Scores::of(answers).likeliest(), (7, probability) if probability < SURE && probability > 0.7));
+        let (digit, probability) = Scores::of(answers).with_other_rarer(0.1).likeliest();
+        assert!(digit == 7 && probability >= SURE);
         assert!((probability - 1.0 / (1.0 + 0.1 * (-1f64).exp() + 9.0 * (-8f64).exp())).abs() <= 1e-6);
     }
 }

@@ -40,7 +40,7 @@ pub(in crate::clock) fn lines(pieces: &[Piece]) -> Vec<Line> {
     let mut bands: Vec<(Piece, Vec<Piece>)> = Vec::new();
     for piece in pieces {
         let near = |band: &Piece| {
-            let high = (band.bottom - band.top).max(piece.bottom - piece.top) + 1;
+            let high = band.height().max(piece.height());
             piece.top as f64 <= band.bottom as f64 + 1.0 + BRIDGE * high as f64
         };
         match bands.last_mut() {
@@ -51,8 +51,11 @@ pub(in crate::clock) fn lines(pieces: &[Piece]) -> Vec<Line> {
             _ => bands.push((piece, vec![piece])),
         }
     }
-    let tall = |band: &Piece| band.bottom - band.top + 1 >= LEAST_HEIGHT;
-    bands.into_iter().filter(|(band, _)| tall(band)).map(|(_, held)| Line { runs: runs(held) }).collect()
+    bands
+        .into_iter()
+        .filter(|(band, _)| band.height() >= LEAST_HEIGHT)
+        .map(|(_, held)| Line { runs: runs(held) })
+        .collect()
 }
 
 /// Pieces that share columns, merged, from the left to the right.
@@ -136,7 +139,7 @@ impl Row {
         self.digits.iter().all(|run| {
             run.top.abs_diff(self.top) as f64 <= slack
                 && run.bottom.abs_diff(self.bottom) as f64 <= slack
-                && (run.right - run.left + 1) as f64 <= WIDEST * height
+                && run.width() as f64 <= WIDEST * height
         })
     }
 

@@ -62,6 +62,14 @@ pub(in crate::clock) struct Piece {
 }
 
 impl Piece {
+    pub(in crate::clock) fn width(&self) -> usize {
+        self.right - self.left + 1
+    }
+
+    pub(in crate::clock) fn height(&self) -> usize {
+        self.bottom - self.top + 1
+    }
+
     /// Whether another piece's box is within this one's.
     pub(in crate::clock) fn holds(&self, other: &Self) -> bool {
         self != other

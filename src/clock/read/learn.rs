@@ -278,13 +278,7 @@ fn likely(crops: &[Gray], place: &[&RowInCrop], format: &ClockFormat) -> f64 {
     for found in place.iter().step_by(step) {
         let page = Page::new(&crops[found.crop]);
         for (run, &highest) in found.row.digits.iter().zip(&highest) {
-            let ink = Cut {
-                left: run.left as f32,
-                top: run.top as f32,
-                width: (run.right - run.left + 1) as f32,
-                height: (run.bottom - run.top + 1) as f32,
-            };
-            let scores = page.judge(ink, found.levels);
+            let scores = page.judge(Cut::around(run), found.levels);
             let most = scores.digits[..=usize::from(highest)].iter().copied().fold(0.0, f64::max);
             sum += most.max(1e-3).ln();
             count += 1.0;

@@ -1,6 +1,6 @@
 //! Where a board is before the camera.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Vector3};
 use rand::RngExt;
@@ -103,11 +103,4 @@ impl View {
 fn middle_mm(options: &BoardOptions) -> Vector3<f64> {
     let half = |count: usize| 0.5 * (count as f64 - 1.0) * options.square_mm;
     Vector3::new(half(options.board.columns), half(options.board.rows), 0.0)
-}
-
-/// The axis of a rotation times its angle, radians.
-pub(super) fn rodrigues(rotation: &Rotation3<f64>) -> [f64; 3] {
-    let angle = rotation.scaled_axis();
-    debug_assert!(angle.norm() <= PI + 1e-9);
-    [angle.x, angle.y, angle.z]
 }

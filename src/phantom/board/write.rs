@@ -8,7 +8,6 @@ use std::time::Instant;
 use image::ExtendedColorType;
 use serde::Serialize;
 
-use super::place::rodrigues;
 use super::{BoardOptions, Picture, Scene, View};
 use crate::figure::encode_png;
 use crate::job::Watch;
@@ -91,8 +90,9 @@ fn write_truth(scene: &Scene, named: &[(String, &View)], stage: &Path) -> Result
         for (k, [x, y]) in scene.corners_px(view).into_iter().enumerate() {
             corners.write(&[name[..].into(), Value::Integer(k as i64), Value::Number(x), Value::Number(y)])?;
         }
-        let (turned, moved) = (rodrigues(&view.rotation), view.translation_mm);
-        let pose = [view.tilt_deg(), turned[0], turned[1], turned[2], moved.x, moved.y, moved.z];
+        // The rotation's axis times its angle.
+        let (turned, moved) = (view.rotation.scaled_axis(), view.translation_mm);
+        let pose = [view.tilt_deg(), turned.x, turned.y, turned.z, moved.x, moved.y, moved.z];
         let row: Vec<Value<'_>> = std::iter::once(name[..].into()).chain(pose.map(Value::Number)).collect();
         views.write(&row)?;
     }

@@ -120,14 +120,10 @@ impl Scene {
         &self.moments[frame].weights
     }
 
-    pub(super) fn ticks(&self, frame: usize) -> i64 {
-        ticks(&self.options, frame)
-    }
-
     /// A frame's presentation time, seconds.
     #[must_use]
     pub fn time_s(&self, frame: usize) -> f64 {
-        time_s(&self.options, frame)
+        self.options.time_s(frame)
     }
 
     /// Whether another nail is in a frame.
@@ -136,12 +132,15 @@ impl Scene {
     }
 }
 
-fn ticks(options: &NailVideoOptions, frame: usize) -> i64 {
-    (frame as f64 / options.fps * f64::from(TICKS_PER_S)).round() as i64
-}
+impl NailVideoOptions {
+    /// A frame's presentation time, ticks.
+    pub(super) fn ticks(&self, frame: usize) -> i64 {
+        (frame as f64 / self.fps * f64::from(TICKS_PER_S)).round() as i64
+    }
 
-fn time_s(options: &NailVideoOptions, frame: usize) -> f64 {
-    ticks(options, frame) as f64 / f64::from(TICKS_PER_S)
+    fn time_s(&self, frame: usize) -> f64 {
+        self.ticks(frame) as f64 / f64::from(TICKS_PER_S)
+    }
 }
 
 /// A person's nail before the camera, near the picture's middle and nearly upright.
@@ -169,8 +168,7 @@ fn region(options: &NailVideoOptions, track: &Track) -> [f64; 4] {
     let [right, bottom] = [options.size.0, options.size.1].map(f64::from);
     let mut region = [0.0, 0.0, right, bottom];
     let half_s = 0.5 * options.blur / options.fps;
-    for time_s in (0..options.frames()).flat_map(|frame| [-1.0, 0.0, 1.0].map(|k| time_s(options, frame) + k * half_s))
-    {
+    for time_s in (0..options.frames()).flat_map(|frame| [-1.0, 0.0, 1.0].map(|k| options.time_s(frame) + k * half_s)) {
         let back = track.at(time_s).inverse();
         for corner in [[0.0, 0.0], [right, 0.0], [0.0, bottom], [right, bottom]] {
             let [x, y] = back.apply(corner);
@@ -187,7 +185,7 @@ fn moments(options: &NailVideoOptions, log: &LogScene, subject: &Subject) -> Vec
     let movement = move |t_s: f64| followed.touch(t_s);
     let mut colour = Response::new(&Blood::of(subject), log.options().dynamics, movement, -BEFORE_S);
     let at = |frame: usize| {
-        let time_s = time_s(options, frame);
+        let time_s = options.time_s(frame);
         Moment { touch: doing.touch(time_s), weights: colour.at(time_s) }
     };
     (0..options.frames()).map(at).collect()

@@ -114,7 +114,7 @@ fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
         ..usual
     };
     let mut encoder = Encoder::create(path, &encoding)?;
-    let encode = |frame: usize, picture: Picture| encoder.push(&picture, scene.ticks(frame));
+    let encode = |frame: usize, picture: Picture| encoder.push(&picture, options.ticks(frame));
     draw_and_encode(scene.frames(), |frame| scene.picture(frame), encode, watch)?;
     Ok(encoder.finish()?)
 }

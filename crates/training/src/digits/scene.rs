@@ -1,6 +1,6 @@
 //! Characters as a camera sees them, with what they are: digits, and what must not be taken for one.
 
-use lunula::clock::{Levels, Patch, Place};
+use lunula::clock::{Levels, Patch};
 use lunula::video::Plane;
 use nalgebra::Matrix3;
 use rand::{Rng, RngExt};
@@ -420,7 +420,7 @@ fn look(style: Style<'_>, content: &Content<'_>, clean: bool, cuts: usize, rng: 
             background: background + guess * contrast * bell(rng),
             ink: full + (full - background) * guess * (bell(rng) - 0.8),
         };
-        Patch::cut(&plane, &Place::upright(cut.map(f64::from)), levels)
+        Patch::cut(&plane, cut.map(f64::from), levels)
     };
     Some((0..cuts).map(one).collect())
 }

@@ -13,7 +13,6 @@ mod boxes;
 mod grey;
 
 use super::patch::{Levels, Patch};
-use super::place::Place;
 use super::recognise;
 use super::scores::SURE;
 use crate::video::Plane;
@@ -42,8 +41,7 @@ fn candidates(plane: &Plane<'_>) -> Vec<Patch> {
     let plane = Plane { width: flat.width, height: flat.height, stride: flat.width, depth: 8, data: &data };
     let cut = |extent: [usize; 4]| {
         let [x0, y0, x1, y1] = extent.map(|v| v as f64);
-        let place = Place::upright([x0 - 0.5, y0 - 0.5, x1 + 0.5, y1 + 0.5]);
-        Patch::cut(&plane, &place, Levels { background: 0.0, ink: FULL })
+        Patch::cut(&plane, [x0 - 0.5, y0 - 0.5, x1 + 0.5, y1 + 0.5], Levels { background: 0.0, ink: FULL })
     };
     flat.boxes().into_iter().filter(|extent| !grey.is_edge(extent)).map(cut).collect()
 }
