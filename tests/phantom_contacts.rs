@@ -147,7 +147,7 @@ fn a_stream_sends_what_the_file_holds() {
         lunula::phantom::log::write(&LogScene::new(options.clone()).unwrap(), &dir.path(name)).unwrap();
         let file = dir.text(&format!("{name}/log.csv"));
         let lines: Vec<&str> = file.lines().collect();
-        let log = LiveLog::new(&options, false).unwrap();
+        let log = LiveLog::new(&options, false, None).unwrap();
         assert_eq!(log.names().join(","), lines[0]);
         let mut sent = 0;
         for (row, line) in log.zip(&lines[1..]) {
@@ -157,7 +157,7 @@ fn a_stream_sends_what_the_file_holds() {
         }
         assert_eq!(sent, lines.len() - 1);
         // Without end it begins alike, but for contacts that the file's end would cut, and goes on.
-        let endless = LiveLog::new(&options, true).unwrap();
+        let endless = LiveLog::new(&options, true, None).unwrap();
         let mut later = 0;
         for (k, row) in endless.take_while(|row| row.row.scene_s < 200.0).enumerate() {
             if row.row.scene_s < 50.0 {
@@ -168,7 +168,7 @@ fn a_stream_sends_what_the_file_holds() {
         assert!(later > 100, "{later}");
     }
     let options = LogOptions { saturate: true, stamps: Stamps::Datetime, dropped: 2.0, ..LogOptions::default() };
-    let words = LiveLog::new(&options, true).err().unwrap().to_string();
+    let words = LiveLog::new(&options, true, None).err().unwrap().to_string();
     for part in ["--saturate: needs the whole log", "--stamps datetime: rows are sent as numbers", "--drop 2"] {
         assert!(words.contains(part), "{words}");
     }

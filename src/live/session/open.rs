@@ -172,7 +172,7 @@ impl PhantomRows {
     fn new(kind: &str, settings: &[(String, String)]) -> Result<Self, String> {
         let (options, table) = log_options(Some(kind), settings)?;
         let endless = !table.contains_key("seconds");
-        let log = LiveLog::new(&options, endless).map_err(|why| why.to_string())?;
+        let log = LiveLog::new(&options, endless, None).map_err(|why| why.to_string())?;
         Ok(Self::of(log))
     }
 
@@ -187,7 +187,7 @@ impl PhantomRows {
             options.follow = LogOptions::of(Protocol::Touch, options.seed).follow;
         }
         (options.lead_s, options.clock_offset_s, options.clock_drift_ppm) = (0.0, 0.0, 0.0);
-        let log = LiveLog::prompted_by(&options, prompting).map_err(|why| why.to_string())?;
+        let log = LiveLog::new(&options, true, Some(prompting)).map_err(|why| why.to_string())?;
         Ok(Self::of(log))
     }
 

@@ -45,8 +45,9 @@ pub(in crate::phantom) struct Doing {
 }
 
 impl Doing {
-    /// Contacts that would go on after `until_s` are left out, infinity: there are always more.
-    pub(in crate::phantom) fn until(options: &LogOptions, until_s: f64) -> Self {
+    /// Contacts that would go on after `until_s` are left out, infinity: there are always more. Somebody may prompt the
+    /// finger, in place of what the options say of its movement.
+    pub(super) fn until(options: &LogOptions, until_s: f64, prompting: Option<Prompting>) -> Self {
         let usual = Spiral::default();
         Self {
             movement: options.trajectory.movement(),
@@ -57,18 +58,13 @@ impl Doing {
             mu: usual.mu,
             shift_rad: shift_rad(options),
             follow: Follow::new(options.follow, options.seed),
-            prompting: None,
+            prompting,
         }
-    }
-
-    /// Of a finger that somebody prompts, in place of what the options say of its movement.
-    pub(super) fn prompted_by(self, prompting: Option<Prompting>) -> Self {
-        Self { prompting, ..self }
     }
 
     /// Of a log that ends.
     pub(in crate::phantom) fn new(options: &LogOptions) -> Self {
-        Self::until(options, options.seconds)
+        Self::until(options, options.seconds, None)
     }
 
     /// What it does at `t_s`.

@@ -13,7 +13,7 @@ use crate::table::{Column, Value, number_text};
 /// ```
 /// use lunula::phantom::log::{LiveLog, LogOptions, Protocol};
 ///
-/// let log = LiveLog::new(&LogOptions::of(Protocol::Contacts, 1), true)?;
+/// let log = LiveLog::new(&LogOptions::of(Protocol::Contacts, 1), true, None)?;
 /// assert_eq!(log.names()[..3], ["time_s", "led", "P1"]);
 /// for sent in log.take(3) {
 ///     assert_eq!(sent.line.split(',').count(), sent.values.len());
@@ -38,25 +38,13 @@ pub struct LiveRow {
 }
 
 impl LiveLog {
-    /// Begins a log; `endless`: it goes on after its seconds, with more contacts.
+    /// Begins a log; `endless`: it goes on after its seconds, with more contacts. Its finger may be one that somebody
+    /// prompts, in place of what the options say of its movement; it follows as [`LogOptions::follow`] says. What it is
+    /// prompted to is asked for some milliseconds apart and once a row ahead.
     ///
     /// # Errors
     /// [`Faults`]: all that is wrong with the options, and what needs the whole log or is no number.
-    pub fn new(options: &LogOptions, endless: bool) -> Result<Self, Faults> {
-        Self::of(options, endless, None)
-    }
-
-    /// Begins the log, without end, of a finger that somebody prompts, in place of what the options say of its
-    /// movement; it follows as [`LogOptions::follow`] says. What it is prompted to is asked for some milliseconds apart
-    /// and once a row ahead.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn prompted_by(options: &LogOptions, prompting: Prompting) -> Result<Self, Faults> {
-        Self::of(options, true, Some(prompting))
-    }
-
-    fn of(options: &LogOptions, endless: bool, prompting: Option<Prompting>) -> Result<Self, Faults> {
+    pub fn new(options: &LogOptions, endless: bool, prompting: Option<Prompting>) -> Result<Self, Faults> {
         let mut faults = options.check().err().unwrap_or_default();
         faults.need(!options.saturate, || {
             "--saturate: needs the whole log before its first row; leave it out".to_owned()

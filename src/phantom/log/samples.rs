@@ -124,7 +124,7 @@ impl Samples {
         let end_s = options.clock_offset_s + rate * (options.seconds + options.trail_s);
         let count = if endless { usize::MAX } else { ((end_s - first_s) * options.rate_hz).ceil().max(0.0) as usize };
         let sensor = Sensor::new(options.subject, options.session);
-        let doing = Doing::until(options, if endless { f64::INFINITY } else { options.seconds }).prompted_by(prompting);
+        let doing = Doing::until(options, if endless { f64::INFINITY } else { options.seconds }, prompting);
         let seen = Seen::new(options, &sensor, &doing);
         Self {
             options: options.clone(),

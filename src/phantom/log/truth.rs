@@ -8,42 +8,34 @@ use crate::phantom::motion::finger::JOINTS;
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::words::Words;
 
-/// Writes the truth of the rows, one by one.
-pub(super) struct TruthWriter {
-    table: TableWriter,
-    contact: bool,
-    channels: usize,
+fn says_contact(options: &LogOptions) -> bool {
+    options.contact || options.contacts().is_some()
 }
 
-impl TruthWriter {
-    pub(super) fn create(options: &LogOptions, path: &Path) -> Result<Self, TableError> {
-        let contact = options.contact || options.contacts().is_some();
-        let mut columns = vec![Column::integer("sample"), Column::number("time_s"), Column::number("log_s")];
-        columns.push(Column::integer("led"));
-        columns.extend(contact.then(|| Column::integer(CONTACT)));
-        columns.extend(JOINTS.map(|joint| Column::number(format!("{joint}_deg"))));
-        columns.extend(FORCES.map(Column::number));
-        columns.extend(
-            ["", "_static", "_unlit"].into_iter().flat_map(|suffix| photodiodes(options, suffix)).map(Column::number),
-        );
-        Ok(Self { table: TableWriter::create(path, path, columns, &[])?, contact, channels: options.channels() })
-    }
+/// The columns of the rows' truth.
+pub(super) fn true_columns(options: &LogOptions) -> Vec<Column> {
+    let mut columns = vec![Column::integer("sample"), Column::number("time_s"), Column::number("log_s")];
+    columns.push(Column::integer("led"));
+    columns.extend(says_contact(options).then(|| Column::integer(CONTACT)));
+    columns.extend(JOINTS.map(|joint| Column::number(format!("{joint}_deg"))));
+    columns.extend(FORCES.map(Column::number));
+    columns.extend(
+        ["", "_static", "_unlit"].into_iter().flat_map(|suffix| photodiodes(options, suffix)).map(Column::number),
+    );
+    columns
+}
 
-    pub(super) fn write(&mut self, row: &Row) -> Result<(), TableError> {
-        let mut cells = vec![Value::Integer(row.sample as i64), Value::Number(row.scene_s), Value::Number(row.log_s)];
-        cells.push(Value::Integer(row.lit.into()));
-        cells.extend(self.contact.then(|| Value::Integer(row.contact.into())));
-        cells.extend(row.touch.angles_rad.map(|angle| Value::Number(angle.to_degrees())));
-        cells.extend(row.touch.forces_n.map(Value::Number));
-        for volts in [row.led_v, row.static_v, row.unlit_v] {
-            cells.extend(volts[..self.channels].iter().copied().map(Value::Number));
-        }
-        self.table.write(&cells)
+/// What is true of a row in them.
+pub(super) fn true_cells(options: &LogOptions, row: &Row) -> Vec<Value<'static>> {
+    let mut cells = vec![Value::Integer(row.sample as i64), Value::Number(row.scene_s), Value::Number(row.log_s)];
+    cells.push(Value::Integer(row.lit.into()));
+    cells.extend(says_contact(options).then(|| Value::Integer(row.contact.into())));
+    cells.extend(row.touch.angles_rad.map(|angle| Value::Number(angle.to_degrees())));
+    cells.extend(row.touch.forces_n.map(Value::Number));
+    for volts in [row.led_v, row.static_v, row.unlit_v] {
+        cells.extend(volts[..options.channels()].iter().copied().map(Value::Number));
     }
-
-    pub(super) fn finish(self) -> Result<(), TableError> {
-        self.table.finish()
-    }
+    cells
 }
 
 /// Writes the contacts and near misses of a log whose finger makes them; those that its first and last sample cut are

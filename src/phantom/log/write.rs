@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::angles::write_angles;
 use super::doing::shift_rad;
 use super::lines::{cells, columns};
-use super::truth::{TruthWriter, write_contacts};
+use super::truth::{true_cells, true_columns, write_contacts};
 use super::{LogOptions, LogScene, SensorModel};
 use crate::files::Staging;
 use crate::phantom::scene::place::{Error, refused, staged, write_record};
@@ -66,12 +66,12 @@ fn write_staged(scene: &LogScene, staging: Staging) -> Result<[usize; 2], Error>
 pub(in crate::phantom) fn write_rows(scene: &LogScene, log: &Path, true_log: &Path) -> Result<[usize; 2], Error> {
     let options = scene.options();
     let mut table = TableWriter::create(log, log, columns(options), &[])?;
-    let mut truth = TruthWriter::create(options, true_log)?;
+    let mut truth = TableWriter::create(true_log, true_log, true_columns(options), &[])?;
     let mut date = String::new();
     let [mut rows, mut lit] = [0, 0];
     for row in scene.samples() {
         table.write(&cells(options, &row, &mut date))?;
-        truth.write(&row)?;
+        truth.write(&true_cells(options, &row))?;
         rows += 1;
         lit += usize::from(row.lit);
     }

@@ -30,7 +30,9 @@ pub trait Generated: Send + Sync {
     fn files(&self) -> Vec<String>;
 
     /// What is known of one of its files.
-    fn facts(&self, file: &str) -> Facts;
+    fn facts(&self, _file: &str) -> Facts {
+        Facts::default()
+    }
 
     /// About what it costs.
     fn cost(&self) -> Cost;
@@ -191,10 +193,6 @@ impl Generated for BoardOptions {
 
     fn files(&self) -> Vec<String> {
         sorted(self.files())
-    }
-
-    fn facts(&self, _file: &str) -> Facts {
-        Facts::default()
     }
 
     fn cost(&self) -> Cost {
