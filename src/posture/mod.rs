@@ -26,7 +26,7 @@ pub(crate) use angle::joints::Angle;
 pub use angle::lens::Lens;
 pub use draw::figures::{AngleFigures, CouplingLine};
 pub use error::PostureError;
-pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, MarkerShape, Segment};
+pub use layout::{Camera, Joint, Layout, LayoutError, Marker, MarkerShape, Segment};
 pub(crate) use marker::method::{Method, Planes, Search};
 pub(crate) use marker::sight::{Centre, Sight};
 pub use options::{Outputs, PostureOptions};

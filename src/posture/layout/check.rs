@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::raw::pair;
-use super::{Camera, Joint, Layout, LayoutFault, Marker, MarkerShape, Segment};
+use super::{Camera, Joint, Layout, Marker, MarkerShape, Segment};
 
 use crate::clock::{Clock, ClockFormat, ClockRoi};
 use crate::flexion::Flexion;
@@ -15,10 +15,10 @@ const TABLES: [&str; 9] = ["flexion", "shape", "markers", "segments", "joints", 
 /// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.
 const DISTORTIONS: [usize; 5] = [0, 4, 5, 8, 12];
 
-pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>> {
+pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<Fault>> {
     let mut findings = Findings::new(text);
     let Some(document) = findings.parse() else {
-        return Err(faults(findings));
+        return Err(findings.finish().err().unwrap_or_default());
     };
     let top = entries(document.get_ref());
     findings.unknown_keys(&top, &TABLES, "key");
@@ -50,7 +50,7 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
         }
     }
     if !findings.is_empty() {
-        return Err(faults(findings));
+        return Err(findings.finish().err().unwrap_or_default());
     }
     let mut warnings = Vec::new();
     for (name, what) in odd_joints(&joints, &segments) {
@@ -114,11 +114,6 @@ fn odd_joints<'a>(
         });
         exchanged.into_iter().chain(overlap).chain(again).map(move |what| (name.as_str(), what))
     })
-}
-
-fn faults(findings: Findings<'_>) -> Vec<LayoutFault> {
-    let found = findings.finish().err().unwrap_or_default();
-    found.into_iter().map(|Fault { line, what, .. }| LayoutFault { line, what }).collect()
 }
 
 fn flexion(findings: &mut Findings<'_>, top: &[Entry<'_>], notes: &mut Vec<String>, path: &Path) -> Flexion {

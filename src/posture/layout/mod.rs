@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use crate::clock::Clock;
 use crate::flexion::Flexion;
+use crate::toml_file::{Fault, place};
 
 /// A sticker or a dot of paint.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -133,15 +134,6 @@ pub struct Layout {
     pub notes: Vec<String>,
 }
 
-/// A fault of a marker file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LayoutFault {
-    /// The line, from 1.
-    pub line: usize,
-    /// What is wrong; what to do.
-    pub what: String,
-}
-
 /// Why there is no layout.
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
@@ -165,7 +157,7 @@ pub enum LayoutError {
         /// The file.
         path: PathBuf,
         /// In the order of lines, at least one.
-        faults: Vec<LayoutFault>,
+        faults: Vec<Fault>,
     },
     /// Joints were asked for that the file does not have.
     #[error("{what}")]
@@ -187,9 +179,9 @@ impl Layout {
             Ok(text) => Self::parse(&text, path),
             Err(why) => {
                 let sound = &why.as_bytes()[..why.utf8_error().valid_up_to()];
-                let line = 1 + sound.iter().filter(|&&b| b == b'\n').count();
+                let (line, column) = place(&String::from_utf8_lossy(sound), sound.len());
                 let what = "not UTF-8 text; save the file as UTF-8".to_owned();
-                Err(LayoutError::Faults { path: path.to_owned(), faults: vec![LayoutFault { line, what }] })
+                Err(LayoutError::Faults { path: path.to_owned(), faults: vec![Fault { line, column, what }] })
             }
         }
     }
