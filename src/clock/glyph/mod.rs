@@ -9,9 +9,9 @@
 //! part, a segment that is neither lit nor dark, marks, letters and blanks are *other*. A segment that is wholly gone
 //! can't be detected: a covered 8 may show a clean 9.
 //!
-//! The way down, a file each: [`patch`] the picture in the character's own frame; [`net`] the small network that weighs
-//! it; [`scores`] its answers; [`crop`] the ink on a whole picture. `crates/training` makes the weights from drawn digits
-//! alone.
+//! The way down, a file each: [`patch`] the picture in the character's own frame; [`net`] the small network that
+//! weighs it; [`scores`] its answers; [`crop`] the ink on a whole picture. `crates/training` makes the weights from
+//! drawn digits alone.
 
 mod crop;
 mod net;

@@ -69,8 +69,7 @@ impl LogOptions {
                 faults.need((0.1..=3600.0).contains(&pause_s), || format!("--pause {pause_s}: choose 0.1 to 3600 s"));
                 let twice = (1..contacts.kinds.len()).find(|&k| contacts.kinds[..k].contains(&contacts.kinds[k]));
                 let twice = twice.map(|k| contacts.kinds[k].word());
-                faults
-                    .need(twice.is_none(), || format!("--kinds: {} is named twice; name it once", twice.unwrap_or("")));
+                faults.0.extend(twice.map(|kind| format!("--kinds: {kind} is named twice; name it once")));
                 faults.need(self.follow == 0.0 && self.touch_from_s.is_none(), || {
                     "--follow, --touch-from: a finger that makes contacts of its own accord follows no prompt; leave \
                      them out"

@@ -113,6 +113,7 @@ pub struct LogOptions {
     pub gaps_s: Vec<[f64; 2]>,
 
     /// The LED is always on, and there is no column for it
+    // True unless the option is given.
     #[arg(long = "no-led", action = ArgAction::SetFalse)]
     pub led: bool,
     /// Standard deviation of a reading

@@ -81,6 +81,7 @@ pub struct PhotoOptions {
     #[arg(long, value_enum, default_value = "varied")]
     pub light: LightKind,
     /// Draw no outlines beside the photographs
+    // True unless the option is given.
     #[arg(long = "no-annotations", action = ArgAction::SetFalse)]
     pub annotate: bool,
     /// Side of the truth's normalized pictures in pixels.
@@ -90,6 +91,7 @@ pub struct PhotoOptions {
     #[arg(skip = 1.25)]
     pub margin: f64,
     /// Leave out truth/normalized (0.6 MB a photograph)
+    // True unless the option is given.
     #[arg(long = "no-normalized", action = ArgAction::SetFalse)]
     pub truth_normalized: bool,
 }
