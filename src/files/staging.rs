@@ -93,6 +93,20 @@ impl Staging {
         disk::write(&self.place(name)?, bytes).map_err(|why| self.refused(name, why))
     }
 
+    /// Draws the picture `name`, PNG and SVG; returns where the PNG will be.
+    ///
+    /// # Errors
+    /// As [`Staging::place`], and where it can't be drawn.
+    pub fn draw(
+        &self,
+        name: &str,
+        draw: impl FnOnce(&Path, &Path) -> anyhow::Result<()>,
+    ) -> Result<PathBuf, WriteError> {
+        let [png, svg] = ["png", "svg"].map(|ending| format!("{name}.{ending}"));
+        draw(&self.place(&png)?, &self.place(&svg)?).map_err(|why| self.refused(&png, format!("{why:#}")))?;
+        Ok(self.target.join(png))
+    }
+
     /// A result written so far.
     ///
     /// # Errors

@@ -45,7 +45,7 @@ pub use merit::figures::{ByTarget, Merit};
 pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, RegressionChoice, share};
 pub use options::commands::{EvaluateChoices, GateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use options::target::{POSTURE, Target};
-pub use outputs::{end, picture};
+pub use outputs::end;
 
 pub(crate) struct OpenedModels {
     pub(crate) predictors: Vec<Predictor>,

@@ -83,10 +83,8 @@ pub fn evaluate_switch(
     let at = staging.place("presses.csv")?;
     write_presses(&at, &out.join("presses.csv"), &read, &found)?;
     if *figures {
-        let (png, svg) = (staging.place("delays.png")?, staging.place("delays.svg")?);
-        let drawn = stages.time("figures", || draw_delays(&found, &png, &svg));
-        drawn.map_err(|why| staging.refused("delays.png", format!("{why:#}")))?;
-        report.pictures.push(out.join("delays.png"));
+        let draw = |png: &Path, svg: &Path| draw_delays(&found, png, svg);
+        report.pictures.push(stages.time("figures", || staging.draw("delays", draw))?);
     }
     let report = report.timed(&stages, start);
     if *with_report {

@@ -73,10 +73,9 @@ pub(super) fn draw(
     staging.write("sheet.png", &sheet_png)?;
     staging.write("sheet.svg", sheet.svg().map_err(|why| refused(&why))?.as_bytes())?;
     let charts = charts(recording, rows, report.unit);
-    let (png, svg) = (staging.place("traces.png")?, staging.place("traces.svg")?);
-    draw_charts(&charts, WIDTH, &png, &svg).map_err(|why| staging.refused("traces.png", format!("{why:#}")))?;
+    let traces = staging.draw("traces", |png, svg| draw_charts(&charts, WIDTH, png, svg))?;
     staging.write("report.html", page(report, rows, &sheet_png, &staging.read("traces.png")?).as_bytes())?;
-    report.pictures = ["traces.png", "sheet.png"].map(|name| staging.target().join(name)).to_vec();
+    report.pictures = vec![traces, staging.target().join("sheet.png")];
     Ok(())
 }
 

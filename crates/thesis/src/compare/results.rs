@@ -4,7 +4,7 @@ use crate::compare::comparison::Comparison;
 use crate::compare::report::CompareReport;
 use lunula::files::Staging;
 use lunula::job::Outputs;
-use lunula::predictor::{BarSeries, Bars, PredictorError, draw_bars, picture};
+use lunula::predictor::{BarSeries, Bars, PredictorError, draw_bars};
 use lunula::stages::Stages;
 use lunula::table::{Column, TableWriter, Value};
 
@@ -31,7 +31,7 @@ pub(super) fn write(report: &mut CompareReport, out: &Outputs, stages: &Stages) 
     let people = report.people.len();
     let draw = |one: &Comparison| {
         let bars = compared(one, people);
-        picture(&staging, folder, &format!("fig-{}", one.figure), |png, svg| draw_bars(&bars, png, svg))
+        staging.draw(&format!("fig-{}", one.figure), |png, svg| draw_bars(&bars, png, svg))
     };
     if out.figures {
         report.pictures =

@@ -280,7 +280,7 @@ impl<'a> Averages<'a> {
             .filter(|channel| channel.name.ends_with(moving))
             .map(|channel| (channel.name.as_str(), channel.values.as_slice()))
             .collect();
-        picture(staging, "moves", |png, svg| figures::moves(&first.time_s, &signals, y, png, svg))?;
+        staging.draw("moves", |png, svg| figures::moves(&first.time_s, &signals, y, png, svg))?;
         // One cycle of bending, as Fig. 32.
         let rows = match &self.cycles[0].legs[..] {
             [a, b, ..] if bending => a.rows.start..b.rows.end,
@@ -288,16 +288,16 @@ impl<'a> Averages<'a> {
         };
         let outputs: Vec<(String, &[f64])> =
             first.outputs.iter().map(|channel| (channel.name.clone(), &channel.values[rows.clone()])).collect();
-        picture(staging, "outputs", |png, svg| {
+        staging.draw("outputs", |png, svg| {
             figures::outputs(&first.time_s[rows.clone()], &outputs, places, png, svg)
         })?;
-        picture(staging, "averages", |png, svg| figures::averages(&self.curves, &options.drive, places, png, svg))?;
+        staging.draw("averages", |png, svg| figures::averages(&self.curves, &options.drive, places, png, svg))?;
         if let (true, Some(j2), Some(j3)) = (bending, first.of("J2_deg"), first.of("J3_deg"))
             && let Some(([offset, slope], r2)) = straight(j2, j3)
         {
             numbers.set("coupling_slope", slope);
             numbers.set("coupling_r2", r2);
-            picture(staging, "coupling", |png, svg| figures::coupling(j2, j3, [offset, slope], r2, png, svg))?;
+            staging.draw("coupling", |png, svg| figures::coupling(j2, j3, [offset, slope], r2, png, svg))?;
         }
         Ok(())
     }
@@ -313,14 +313,4 @@ fn straight(x: &[f64], y: &[f64]) -> Option<([f64; 2], f64)> {
     let left: f64 = points.iter().map(|p| (p[1] - offset - slope * p[0]).powi(2)).sum();
     let all: f64 = points.iter().map(|p| (p[1] - y).powi(2)).sum();
     (all > 0.0).then(|| ([offset, slope], 1.0 - left / all))
-}
-
-/// Draws a picture as PNG and SVG.
-pub(super) fn picture(
-    staging: &Staging,
-    name: &str,
-    draw: impl FnOnce(&Path, &Path) -> anyhow::Result<()>,
-) -> Result<(), WriteError> {
-    let [png, svg] = ["png", "svg"].map(|ending| format!("{name}.{ending}"));
-    draw(&staging.place(&png)?, &staging.place(&svg)?).map_err(|why| staging.refused(&png, format!("{why:#}")))
 }

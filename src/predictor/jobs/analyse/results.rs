@@ -1,6 +1,6 @@
 //! `modes.csv` and Fig. 98.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use ndarray::Array2;
 
@@ -9,7 +9,6 @@ use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{Modes, draw_modes};
 use crate::predictor::jobs::analyse::report::{AnalyseReport, ModelMode};
-use crate::predictor::outputs::picture;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -29,12 +28,12 @@ pub(super) fn write(report: &mut AnalyseReport, out: &Outputs, stages: &Stages) 
     }
     table.finish()?;
     if out.figures {
-        report.pictures = vec![stages.time("figures", || modes_picture(&staging, folder, report))?];
+        report.pictures = vec![stages.time("figures", || modes_picture(&staging, report))?];
     }
     Ok(staging)
 }
 
-fn modes_picture(staging: &Staging, folder: &Path, report: &AnalyseReport) -> Result<PathBuf, PredictorError> {
+fn modes_picture(staging: &Staging, report: &AnalyseReport) -> Result<PathBuf, PredictorError> {
     let modes = &report.modes.modes;
     let of = |by: fn(&ModelMode) -> &[(String, f64)], rows: usize| {
         Array2::from_shape_fn((rows, modes.len()), |(row, mode)| by(&modes[mode])[row].1)
@@ -52,5 +51,5 @@ fn modes_picture(staging: &Staging, folder: &Path, report: &AnalyseReport) -> Re
         of_targets: left.view(),
         of_inputs: right.view(),
     };
-    picture(staging, folder, "modes", |png, svg| draw_modes(&drawn, png, svg))
+    Ok(staging.draw("modes", |png, svg| draw_modes(&drawn, png, svg))?)
 }

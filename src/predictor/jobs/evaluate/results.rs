@@ -15,7 +15,6 @@ use crate::predictor::figures::{
 use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted, Splits};
 use crate::predictor::jobs::evaluate::splits::way;
 use crate::predictor::merit::table::{MERIT, MeritRows, merit_table};
-use crate::predictor::outputs::picture;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -38,10 +37,10 @@ pub(super) fn write(
         stages.time("write", || splits_table(&staging, folder, found))?;
     }
     if out.figures {
-        let mut pictures = stages.time("figures", || evaluation_pictures(&staging, folder, report, shown))?;
+        let mut pictures = stages.time("figures", || evaluation_pictures(&staging, report, shown))?;
         if let Some(model) = eigennails {
             let names: Vec<String> = shown.data.inputs().to_vec();
-            pictures.push(picture(&staging, folder, "eigennails", |png, svg| draw_nails(model, &names, png, svg))?);
+            pictures.push(staging.draw("eigennails", |png, svg| draw_nails(model, &names, png, svg))?);
         }
         report.pictures = pictures;
     }
@@ -51,7 +50,6 @@ pub(super) fn write(
 /// Over time, scatter, errors by size, parts held out; returns where the PNGs will be.
 fn evaluation_pictures(
     staging: &Staging,
-    folder: &Path,
     report: &EvaluateReport,
     shown: &Predicted,
 ) -> Result<Vec<PathBuf>, PredictorError> {
@@ -63,8 +61,8 @@ fn evaluation_pictures(
     let mut drawn = figures::Predicted::of(&shown.data, shown.values.view());
     drawn.interval = widths.as_ref().map(|([low, high], level)| ([low.view(), high.view()], *level));
     let mut pictures = vec![
-        picture(staging, folder, "over-time", |png, svg| draw_over_time(&drawn, title, png, svg))?,
-        picture(staging, folder, "scatter", |png, svg| draw_scatter(&drawn, title, png, svg))?,
+        staging.draw("over-time", |png, svg| draw_over_time(&drawn, title, png, svg))?,
+        staging.draw("scatter", |png, svg| draw_scatter(&drawn, title, png, svg))?,
     ];
     if let Some(found) = &report.by_magnitude {
         let bins: Vec<MagnitudeBin> = found
@@ -78,7 +76,7 @@ fn evaluation_pictures(
             })
             .collect();
         let unit = if found.of.ends_with("_deg") { "degrees" } else { "N" };
-        pictures.push(picture(staging, folder, "by-magnitude", |png, svg| {
+        pictures.push(staging.draw("by-magnitude", |png, svg| {
             draw_error_by_magnitude(title, unit, shown.data.targets(), &bins, png, svg)
         })?);
     }
@@ -98,11 +96,11 @@ fn evaluation_pictures(
             groups: names.collect(),
             series: shown.data.targets().iter().enumerate().map(one).collect(),
         };
-        pictures.push(picture(staging, folder, "held-out", |png, svg| draw_bars(&bars, png, svg))?);
+        pictures.push(staging.draw("held-out", |png, svg| draw_bars(&bars, png, svg))?);
     }
     if let Some(found) = &report.splits {
         let charts: Vec<Bars> = shown.data.targets().iter().map(|target| split_bars(found, target)).collect();
-        pictures.push(picture(staging, folder, "splits", |png, svg| draw_bar_charts(&charts, png, svg))?);
+        pictures.push(staging.draw("splits", |png, svg| draw_bar_charts(&charts, png, svg))?);
     }
     Ok(pictures)
 }

@@ -5,7 +5,6 @@ use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{self, BarSeries, Bars, SubsetSeries, draw_bars, draw_best_subsets};
 use crate::predictor::jobs::prune::report::{PruneReport, PruneRow};
-use crate::predictor::outputs::picture;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -36,10 +35,8 @@ pub(super) fn write(report: &mut PruneReport, out: &Outputs, stages: &Stages) ->
     let mut pictures = Vec::new();
     if out.figures && !report.without_one.is_empty() {
         let bars = without_one(report);
-        pictures.push(
-            stages
-                .time("figures", || picture(&staging, folder, "without-one", |png, svg| draw_bars(&bars, png, svg)))?,
-        );
+        let drawn = stages.time("figures", || staging.draw("without-one", |png, svg| draw_bars(&bars, png, svg)));
+        pictures.push(drawn?);
     }
     let series = SubsetSeries {
         name: "mean of the targets".to_owned(),
@@ -52,7 +49,7 @@ pub(super) fn write(report: &mut PruneReport, out: &Outputs, stages: &Stages) ->
     if out.figures && !series.best.is_empty() {
         let (title, label) = ("the best photodiodes of each number", "validation RMSE over the target's SD");
         pictures.push(stages.time("figures", || {
-            picture(&staging, folder, "best-of-size", |png, svg| {
+            staging.draw("best-of-size", |png, svg| {
                 draw_best_subsets(title, label, &report.inputs, &[series], png, svg)
             })
         })?);
