@@ -22,29 +22,12 @@ use crate::Dataset;
 pub struct FoldResult {
     /// What was held out.
     pub name: String,
-    /// Rows trained on.
-    pub train_rows: usize,
-    /// Rows held out.
-    pub test_rows: usize,
     /// Rows held out that a row trained on equals in every digit: above 0, something was given twice (or stands still).
     pub shared_rows: usize,
     /// Scores of the rows held out; none where the fit failed.
     pub scores: Option<Scores>,
     /// Why the fit failed.
     pub fault: Option<String>,
-}
-
-/// How one target's RMSE spreads over folds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FoldSpread {
-    /// The target's column, such as `Fz_N`.
-    pub name: String,
-    /// Mean of the folds' RMSE (the thesis' average over subjects), the target's unit; NaN where no fold has any.
-    pub mean_rmse: f64,
-    /// Of the fold that was predicted best, the target's unit.
-    pub least_rmse: f64,
-    /// Of the fold that was predicted worst, the target's unit.
-    pub greatest_rmse: f64,
 }
 
 /// How much shuffled rows flatter.
@@ -67,8 +50,6 @@ pub struct CrossValidation {
     pub folds: Vec<FoldResult>,
     /// All held-out rows together.
     pub pooled: Scores,
-    /// The folds' RMSE, a target each: where parts differ in size, the pooled figure is the large ones'.
-    pub spread: Vec<FoldSpread>,
     /// Each row as predicted by the model that has not seen it; NaN where its fold failed.
     #[serde(skip)]
     pub predicted: Array2<f64>,
@@ -171,28 +152,14 @@ pub(super) fn hold_out<P, E: Display>(
         let measured = data.y().select(Axis(0), &fold.test);
         results.push(FoldResult {
             name: fold.name.clone(),
-            train_rows: fold.train.len(),
-            test_rows: fold.test.len(),
             shared_rows,
             scores: part.as_ref().ok().map(|part| score(measured.view(), part.view(), data.targets())),
             fault: part.as_ref().err().cloned(),
         });
     }
     let pooled = score(data.y().view(), predicted.view(), data.targets());
-    let spread = data.targets().iter().enumerate().map(|(column, name)| spread(name, column, &results)).collect();
     let rows = folds.into_iter().map(|fold| fold.test).collect();
-    Ok(CrossValidation { by, folds: results, pooled, spread, predicted, rows, flattery: None })
-}
-
-fn spread(name: &str, column: usize, folds: &[FoldResult]) -> FoldSpread {
-    let all = folds.iter().filter_map(|fold| Some(fold.scores.as_ref()?.targets[column].rmse));
-    let known = all.filter(|rmse| !rmse.is_nan());
-    FoldSpread {
-        name: name.to_owned(),
-        mean_rmse: super::sum::mean(known.clone()),
-        least_rmse: known.clone().fold(f64::NAN, f64::min),
-        greatest_rmse: known.fold(f64::NAN, f64::max),
-    }
+    Ok(CrossValidation { by, folds: results, pooled, predicted, rows, flattery: None })
 }
 
 #[cfg(test)]
@@ -214,8 +181,6 @@ mod tests {
         }
         assert_eq!(all.pooled.rows, 300);
         assert_eq!(all.folds[1].scores.as_ref().unwrap().rows, 90);
-        assert!(all.spread[0].least_rmse <= all.spread[0].mean_rmse);
-        assert!(all.spread[0].mean_rmse <= all.spread[0].greatest_rmse);
         assert!(all.flattery.is_none());
         assert_eq!(all.residuals(&data)[[0, 1]], all.predicted[[0, 1]] - data.y()[[0, 1]]);
     }
@@ -266,10 +231,6 @@ mod tests {
         let first = &all.folds[0].scores.as_ref().unwrap().targets[0];
         assert_eq!((first.n, first.r2), (1, None));
         assert!(all.pooled.targets[0].r2.is_some());
-        assert_eq!(
-            all.spread[0].mean_rmse,
-            all.folds.iter().map(|fold| fold.scores.as_ref().unwrap().targets[0].rmse).sum::<f64>() / 3.0
-        );
         let one = cross_validate(&data.only(&[0]), By::Trajectory, Nearest::fit, Nearest::predict);
         assert!(matches!(one, Err(CrossFault::Split(SplitFault::One { .. }))));
         let flat = data.x().mapv(|_| 0.1);

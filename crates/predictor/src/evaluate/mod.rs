@@ -20,7 +20,7 @@ mod splits;
 pub(crate) mod sum;
 
 pub use coverage::{Coverage, CrossCoverage, coverage, cross_coverage, nested_coverage};
-pub use cross::{CrossFault, CrossValidation, Flattery, FoldResult, FoldSpread, cross_validate};
+pub use cross::{CrossFault, CrossValidation, Flattery, FoldResult, cross_validate};
 pub use interval::{IntervalFault, Intervals, calibrate};
 pub use learning::{LearningFault, LearningPoint, learn_by_recordings, learn_by_share};
 pub use magnitude::{Bin, ByMagnitude, MagnitudeFault, by_magnitude, magnitude_edges};
