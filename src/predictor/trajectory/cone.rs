@@ -6,10 +6,9 @@
 use super::TrajectoryOptions;
 use super::figures::{is_near, line, moments};
 use super::motion::ForceMotion;
-use crate::figure::{Chart, Item, draw_charts};
+use crate::figure::{Chart, Item};
 
-/// Width and height.
-const SIZE: (u32, u32) = (760, 700);
+const HEIGHT: u32 = 700;
 /// How much of Fy goes right and up.
 const DEPTH: [f64; 2] = [0.45, 0.3];
 /// Circles of the cone, evenly along the pressing.
@@ -38,13 +37,8 @@ fn sides(rim: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     ends.into_iter().flatten().map(|end| vec![[0.0, 0.0], *end]).collect()
 }
 
-/// Draws cone and trajectory.
-pub(super) fn draw_cone(
-    options: &TrajectoryOptions,
-    motion: &ForceMotion,
-    png: &std::path::Path,
-    svg: &std::path::Path,
-) -> anyhow::Result<()> {
+/// Cone and trajectory.
+pub(super) fn cone_chart(options: &TrajectoryOptions, motion: &ForceMotion) -> Chart {
     let size = [2.0 * options.mu * options.fz_max_n, options.fz_max_n];
     let mut path: Vec<[f64; 2]> = moments(options).map(|time_s| seen(motion.at(time_s))).collect();
     path.dedup_by(|next, kept| is_near(*next, *kept, size));
@@ -57,12 +51,7 @@ pub(super) fn draw_cone(
         Item::Line { name, runs: circles.into_iter().chain(sides).collect(), colour: 1, width: 2 },
     ];
     let x = "Fx, N (Fy goes into the depth)";
-    draw_charts(
-        &[Chart::new("The cone of friction, and the trajectory within", x, "pressing, N", items, SIZE.1)],
-        SIZE.0,
-        png,
-        svg,
-    )
+    Chart::new("The cone of friction, and the trajectory within", x, "pressing, N", items, HEIGHT)
 }
 
 #[cfg(test)]

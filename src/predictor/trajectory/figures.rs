@@ -4,12 +4,15 @@ use lunula_predictor::Spiral;
 
 use super::TrajectoryOptions;
 use super::motion::{ForceMotion, Path};
-use crate::figure::{Chart, Item, draw_charts};
+use crate::figure::{Chart, Item};
 
-const WIDTH: u32 = 1400;
+/// Of pictures over time.
+pub(super) const WIDTH: u32 = 1400;
 const HEIGHT: u32 = 380;
+/// Of pictures of forces over forces.
+pub(super) const SPACE_WIDTH: u32 = 760;
 /// Of the path's picture: a newton is as long across as upwards.
-const PATH: (u32, u32) = (760, 804);
+const PATH_HEIGHT: u32 = 804;
 /// Points of a path that are nearer than this share of the picture are one.
 const NEAR: f64 = 0.003;
 const POINTS: u32 = 12_000;
@@ -32,12 +35,7 @@ pub(super) fn is_near(a: [f64; 2], b: [f64; 2], size: [f64; 2]) -> bool {
 
 /// The shear's path as seen from above, in the colours of three thirds of the pressing, in the circle that friction
 /// allows at most (Fig. 90, 93).
-pub(super) fn draw_path(
-    options: &TrajectoryOptions,
-    motion: &ForceMotion,
-    png: &std::path::Path,
-    svg: &std::path::Path,
-) -> anyhow::Result<()> {
+pub(super) fn path_chart(options: &TrajectoryOptions, motion: &ForceMotion) -> Chart {
     let third_n = options.fz_max_n / 3.0;
     let rim_n = options.fz_max_n * options.mu;
     let mut runs: [Vec<Vec<[f64; 2]>>; 3] = Default::default();
@@ -63,17 +61,11 @@ pub(super) fn draw_path(
     items.extend(runs.into_iter().enumerate().map(|(colour, runs)| Item::Line { name: None, runs, colour, width: 2 }));
     let thirds = (0..3).map(|k| format!("{} to {:.3} N", COLOURS[k], third_n * (k + 1) as f64)).collect::<Vec<_>>();
     let title = format!("Shear; pressing {}", thirds.join(", ")).replace(".000", "");
-    let chart = Chart::new(title, "Fx, N", "Fy, N", items, PATH.1);
-    draw_charts(&[chart], PATH.0, png, svg)
+    Chart::new(title, "Fx, N", "Fy, N", items, PATH_HEIGHT)
 }
 
 /// Components over time, and the shear over time and over the pressing with the limits of friction (Fig. 91, 92).
-pub(super) fn draw_forces(
-    options: &TrajectoryOptions,
-    motion: &ForceMotion,
-    png: &std::path::Path,
-    svg: &std::path::Path,
-) -> anyhow::Result<()> {
+pub(super) fn force_charts(options: &TrajectoryOptions, motion: &ForceMotion) -> Vec<Chart> {
     let rows: Vec<(f64, [f64; 3])> = moments(options).map(|time_s| (time_s, motion.at(time_s))).collect();
     let component = |k: usize| rows.iter().map(|row| [row.0, row.1[k]]).collect();
     let most = |sign: f64| rows.iter().map(|row| [row.0, -sign * options.mu * row.1[2]]).collect();
@@ -99,12 +91,11 @@ pub(super) fn draw_forces(
         line(Some("Fy"), component(1), 1, 1),
         line(Some("Fz, pressing is negative"), component(2), 2, 2),
     ];
-    let charts = [
+    vec![
         Chart::new(title(options, motion.spiral.as_ref()), "time, s", "force, N", components, HEIGHT),
         Chart::new("Shear over time", "time, s", shear, in_time, HEIGHT),
         Chart::new("Shear over pressing", "pressing, N", shear, in_space, HEIGHT),
-    ];
-    draw_charts(&charts, WIDTH, png, svg)
+    ]
 }
 
 fn title(options: &TrajectoryOptions, spiral: Option<&Spiral>) -> String {
@@ -117,18 +108,13 @@ fn title(options: &TrajectoryOptions, spiral: Option<&Spiral>) -> String {
     }
 }
 
-pub(super) fn draw_posture(
-    options: &TrajectoryOptions,
-    path: &Path,
-    png: &std::path::Path,
-    svg: &std::path::Path,
-) -> anyhow::Result<()> {
+/// The angle over time.
+pub(super) fn posture_chart(options: &TrajectoryOptions, path: &Path) -> Chart {
     let points =
         moments(options).map(|time_s| [time_s, path.during(time_s, options.lead_s, options.seconds)]).collect();
     let title = match path {
         Path::Bending(bending) => format!("Bending (equation 27) at {} Hz", bending.hz),
         Path::Random(_) => "Random bending".to_owned(),
     };
-    let chart = Chart::new(title, "time, s", "J2, degrees of flexion", vec![line(None, points, 0, 2)], 420);
-    draw_charts(&[chart], WIDTH, png, svg)
+    Chart::new(title, "time, s", "J2, degrees of flexion", vec![line(None, points, 0, 2)], 420)
 }

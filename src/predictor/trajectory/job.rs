@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::check::faults;
-use super::cone::draw_cone;
+use super::cone::cone_chart;
 use super::motion::Motion;
 use super::report::{ForceFigures, PostureFigures, TrajectoryFigures, TrajectoryReport};
 use super::{Kind, TrajectoryOptions, figures};
+use crate::figure::{Chart, draw_charts};
 use crate::files::{Places, beside};
 use crate::job::{Outputs, Report, Watch};
 use crate::predictor::error::PredictorError;
@@ -175,18 +176,18 @@ fn draw(
     table: &Path,
     places: &mut Places,
 ) -> Result<Vec<PathBuf>, PredictorError> {
-    let kinds: &[&str] = match motion {
-        Motion::Force(_) => &["force", "path", "cone"],
-        Motion::Posture { .. } => &["posture"],
+    let drawn = match motion {
+        Motion::Force(motion) => vec![
+            ("force", figures::force_charts(options, motion), figures::WIDTH),
+            ("path", vec![figures::path_chart(options, motion)], figures::SPACE_WIDTH),
+            ("cone", vec![cone_chart(options, motion)], figures::SPACE_WIDTH),
+        ],
+        Motion::Posture { path, .. } => {
+            vec![("posture", vec![figures::posture_chart(options, path)], figures::WIDTH)]
+        }
     };
-    let mut pictures = Vec::new();
-    for kind in kinds {
-        pictures.push(places.draw(table, kind, |png, svg| match motion {
-            Motion::Force(motion) if *kind == "path" => figures::draw_path(options, motion, png, svg),
-            Motion::Force(motion) if *kind == "cone" => draw_cone(options, motion, png, svg),
-            Motion::Force(motion) => figures::draw_forces(options, motion, png, svg),
-            Motion::Posture { path, .. } => figures::draw_posture(options, path, png, svg),
-        })?);
-    }
-    Ok(pictures)
+    let place = |(kind, charts, width): (&str, Vec<Chart>, u32)| {
+        Ok(places.draw(table, kind, |png, svg| draw_charts(&charts, width, png, svg))?)
+    };
+    drawn.into_iter().map(place).collect()
 }
