@@ -32,6 +32,7 @@ use lunula::files::Staging;
 use lunula::job::{Report, Watch};
 use lunula::stages::Stages;
 use lunula::table::{Column, TableWriter, Value};
+use lunula::words::Words as _;
 pub use parts::Part;
 
 /// A folder of results.
@@ -105,16 +106,16 @@ pub fn study_page(
 ) -> anyhow::Result<PageReport> {
     let start = Instant::now();
     let subject = options.subject.as_deref().unwrap_or_default();
-    let shown: Vec<&PartFolder> = Part::ALL.iter().filter_map(|part| chosen(folders, *part, subject)).collect();
+    let shown: Vec<&PartFolder> = Part::all().filter_map(|part| chosen(folders, part, subject)).collect();
     let mut warnings = Vec::new();
     let mut numbers = Numbers::default();
     for one in &shown {
         match one.part.numbers(&one.folder) {
-            Ok(own) => numbers.take(one.part.name(), &own),
+            Ok(own) => numbers.take(one.part.word(), &own),
             // The page is the same wherever it is brought: no folder of this machine is in it.
             Err(why) => {
                 let within = format!("{}/", one.folder.display());
-                warnings.push(format!("{}: {}", one.part.name(), format!("{why:#}").replace(&within, "")));
+                warnings.push(format!("{}: {}", one.part.word(), format!("{why:#}").replace(&within, "")));
             }
         }
     }
@@ -134,11 +135,11 @@ pub fn study_page(
             let number = figure.label();
             let found = shown.iter().find(|one| one.part == figure.part);
             let Some(found) = found else {
-                lacking.push(format!("{number}: there are no results of \"{}\"", figure.part.name()));
+                lacking.push(format!("{number}: there are no results of \"{}\"", figure.part.word()));
                 continue;
             };
             let Ok(png) = fs::read(found.folder.join(format!("{}.png", figure.picture))) else {
-                lacking.push(format!("{number}: \"{}\" has no such picture", figure.part.name()));
+                lacking.push(format!("{number}: \"{}\" has no such picture", figure.part.word()));
                 continue;
             };
             let whose = match found.subject.as_str() {
@@ -291,9 +292,9 @@ fn tables(page: &mut Page, shown: &[&PartFolder], staging: &Staging) -> anyhow::
     for one in shown {
         for table in one.part.tables() {
             let Ok(bytes) = fs::read(one.folder.join(table)) else { continue };
-            let name = format!("tables/{}-{table}", one.part.name());
+            let name = format!("tables/{}-{table}", one.part.word());
             staging.write(&name, &bytes)?;
-            links.push((name, format!("{} {table}", one.part.name().replace('_', " "))));
+            links.push((name, format!("{} {table}", one.part.word().replace('_', " "))));
         }
     }
     page.anchored_heading("tables", "Tables");

@@ -7,6 +7,7 @@ use anyhow::anyhow;
 use crate::coloration::coloration_numbers;
 use crate::numbers::Numbers;
 use crate::predictors::{compare_numbers, evaluation_numbers, modes_numbers, performance_numbers};
+use lunula::words::Words;
 
 /// A part of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,56 +54,36 @@ pub enum Part {
     Performance,
 }
 
+impl Words for Part {
+    /// All, in the thesis' order: their names in pipeline files and before their numbers' names.
+    const WORDS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Rising, "rising", "one nail under rising force"),
+        (Self::FilmGreen, "film_green", "a sensor and a camera on one nail, the camera's green"),
+        (Self::FilmRatio, "film_ratio", "the same, the camera's green over red"),
+        (Self::Normal, "normal", "responses to normal force"),
+        (Self::Lateral, "lateral", "responses to lateral shear"),
+        (Self::Longitudinal, "longitudinal", "responses to longitudinal shear"),
+        (Self::Bending, "bending", "responses to bending"),
+        (Self::Typical, "typical", "one subject's coloration"),
+        (Self::Photos, "photos", "maps of photographs"),
+        (Self::Section, "section", "the simulations of section 4.3"),
+        (Self::Presses, "presses", "its experiments"),
+        (Self::Calibration, "calibration", "the trajectory that the person was prompted by"),
+        (Self::TouchTraining, "touch_training", "the touch model evaluated on what it was trained on"),
+        (Self::TouchValidation, "touch_validation", "on the third repetition"),
+        (Self::TouchTest, "touch_test", "on random touching"),
+        (Self::Modes, "modes", "the touch model analysed"),
+        (Self::PostureTraining, "posture_training", "the posture model evaluated on the half that it was trained on"),
+        (Self::PostureValidation, "posture_validation", "on the second half"),
+        (Self::Compare, "compare", "models compared over subjects"),
+        (Self::Performance, "performance", "trials of two methods of control"),
+    ];
+}
+
 impl Part {
     /// All, in the thesis' order.
-    pub const ALL: [Self; 20] = [
-        Self::Rising,
-        Self::FilmGreen,
-        Self::FilmRatio,
-        Self::Normal,
-        Self::Lateral,
-        Self::Longitudinal,
-        Self::Bending,
-        Self::Typical,
-        Self::Photos,
-        Self::Section,
-        Self::Presses,
-        Self::Calibration,
-        Self::TouchTraining,
-        Self::TouchValidation,
-        Self::TouchTest,
-        Self::Modes,
-        Self::PostureTraining,
-        Self::PostureValidation,
-        Self::Compare,
-        Self::Performance,
-    ];
-
-    /// Its name in pipeline files, and before its numbers' names.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rising => "rising",
-            Self::FilmGreen => "film_green",
-            Self::FilmRatio => "film_ratio",
-            Self::Normal => "normal",
-            Self::Lateral => "lateral",
-            Self::Longitudinal => "longitudinal",
-            Self::Bending => "bending",
-            Self::Typical => "typical",
-            Self::Photos => "photos",
-            Self::Section => "section",
-            Self::Presses => "presses",
-            Self::Calibration => "calibration",
-            Self::TouchTraining => "touch_training",
-            Self::TouchValidation => "touch_validation",
-            Self::TouchTest => "touch_test",
-            Self::Modes => "modes",
-            Self::PostureTraining => "posture_training",
-            Self::PostureValidation => "posture_validation",
-            Self::Compare => "compare",
-            Self::Performance => "performance",
-        }
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::WORDS.iter().map(|one| one.0)
     }
 
     /// Its tables, which the page links to.
@@ -138,8 +119,11 @@ impl Part {
             Self::Modes => Ok(modes_numbers(folder)?),
             Self::Compare => Ok(compare_numbers(folder)?),
             Self::Performance => performance_numbers(folder),
-            Self::TouchValidation | Self::TouchTraining | Self::TouchTest => Ok(evaluation_numbers(folder)?),
-            Self::PostureTraining | Self::PostureValidation => Ok(evaluation_numbers(folder)?),
+            Self::TouchTraining
+            | Self::TouchValidation
+            | Self::TouchTest
+            | Self::PostureTraining
+            | Self::PostureValidation => Ok(evaluation_numbers(folder)?),
             _ => Numbers::read(&folder.join("numbers.json")).map_err(|why| anyhow!(why)),
         }
     }

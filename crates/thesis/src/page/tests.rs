@@ -21,7 +21,7 @@ use lunula::phantom::nail::Pose;
 use lunula::predictor::DataFile;
 
 fn part(at: &Path, part: Part, subject: &str, files: &[(&str, &[u8])]) -> PartFolder {
-    let folder = at.join(part.name()).join(subject);
+    let folder = at.join(part.word()).join(subject);
     fs::create_dir_all(&folder).unwrap();
     files.iter().for_each(|(name, bytes)| fs::write(folder.join(name), bytes).unwrap());
     PartFolder { part, folder, subject: subject.to_owned() }
@@ -156,7 +156,7 @@ fn tables_of(part: Part) -> Vec<(&'static str, String)> {
 fn every_quantity_of_the_statements_is_computed() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let parts: Vec<PartFolder> = Part::ALL.into_iter().map(|of| part(at, of, "", &[])).collect();
+    let parts: Vec<PartFolder> = Part::all().map(|of| part(at, of, "", &[])).collect();
     for PartFolder { part, folder, .. } in &parts {
         tables_of(*part).iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
         let write = |numbers| fs::write(folder.join("numbers.json"), Numbers(numbers).to_text()).unwrap();
