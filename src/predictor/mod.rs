@@ -42,7 +42,7 @@ pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 pub(crate) use merit::doubts::extrapolated;
 pub use merit::figures::{ByTarget, Merit};
-pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, RegressionChoice, share};
+pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
 pub use options::commands::{EvaluateChoices, GateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use options::target::{POSTURE, Target};
 pub use outputs::end;

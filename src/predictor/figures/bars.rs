@@ -40,10 +40,10 @@ pub struct BarSeries {
 /// Rows whose force has a size between two values.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::predictor) struct MagnitudeBin {
-    /// From and to; without an upper end all that is larger.
+    /// The size that it begins with.
     pub from: f64,
-    /// See `from`.
-    pub to: Option<f64>,
+    /// The size that it ends before.
+    pub to: f64,
     /// How many rows.
     pub rows: usize,
     /// The RMSE of each target; none where no row is.
@@ -100,13 +100,7 @@ pub(in crate::predictor) fn draw_error_by_magnitude(
     png: &Path,
     svg: &Path,
 ) -> anyhow::Result<()> {
-    let group = |bin: &MagnitudeBin| {
-        let ends = match bin.to {
-            Some(to) => format!("{} to {} {unit}", plain(bin.from), plain(to)),
-            None => format!("over {} {unit}", plain(bin.from)),
-        };
-        format!("{ends}\n{} rows", bin.rows)
-    };
+    let group = |bin: &MagnitudeBin| format!("{} to {} {unit}\n{} rows", plain(bin.from), plain(bin.to), bin.rows);
     let series = |(k, name): (usize, &String)| BarSeries {
         name: name.clone(),
         values: bins.iter().map(|bin| bin.rmse.get(k).copied().flatten()).collect(),

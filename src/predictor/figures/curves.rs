@@ -17,37 +17,17 @@ pub(in crate::predictor) struct Subset {
     pub error: f64,
 }
 
-/// The best subsets by one measure.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::predictor) struct SubsetSeries {
-    /// For the legend: `Fz_N`, `all targets`.
-    pub name: String,
-    /// One of each size, in any order.
-    pub best: Vec<Subset>,
-}
-
 /// Errors on a learning curve.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::predictor) struct LearningSeries {
     /// For the legend.
     pub name: String,
-    /// By ascending x.
-    pub points: Vec<CurvePoint>,
+    /// How much was learnt from, ascending, and the error.
+    pub points: Vec<[f64; 2]>,
 }
 
-/// A point with its spread.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::predictor) struct CurvePoint {
-    /// How much was learnt from.
-    pub x: f64,
-    /// The error.
-    pub y: f64,
-    /// The ends of its spread, if they are known.
-    pub spread: Option<[f64; 2]>,
-}
-
-/// Draws the error of the best subset of each size; the photodiodes in it are written at the points, `all` is every one
-/// of `photodiodes`.
+/// Draws the error of the best subset of each size, by the measure `name`; the photodiodes in it are written at the
+/// points, `all` is every one of `photodiodes`.
 ///
 /// # Errors
 /// A file that can't be written.
@@ -55,36 +35,29 @@ pub(in crate::predictor) fn draw_best_subsets(
     title: &str,
     y_label: &str,
     photodiodes: &[String],
-    series: &[SubsetSeries],
+    name: &str,
+    best: &[Subset],
     png: &Path,
     svg: &Path,
 ) -> anyhow::Result<()> {
     let most = photodiodes.len();
+    let mut best: Vec<&Subset> = best.iter().filter(|subset| subset.error.is_finite()).collect();
+    best.sort_by_key(|subset| subset.photodiodes.len());
+    let points: Vec<[f64; 2]> = best.iter().map(|s| [s.photodiodes.len() as f64, s.error]).collect();
     let mut items = vec![
         Item::Room(vec![[0.5, 0.0], [most as f64 + 0.5, 0.0]]),
         Item::Names((1..=most).map(|n| (n as f64, n.to_string())).collect()),
+        Item::Line { name: Some(name.to_owned()), runs: vec![points.clone()], colour: 0, width: 2 },
+        Item::Dots { name: None, points: points.clone(), colour: 0 },
     ];
-    for (colour, one) in series.iter().enumerate() {
-        let mut best: Vec<&Subset> = one.best.iter().filter(|subset| subset.error.is_finite()).collect();
-        best.sort_by_key(|subset| subset.photodiodes.len());
-        let points: Vec<[f64; 2]> = best.iter().map(|s| [s.photodiodes.len() as f64, s.error]).collect();
-        items.push(Item::Line { name: Some(one.name.clone()), runs: vec![points.clone()], colour, width: 2 });
-        items.push(Item::Dots { name: None, points: points.clone(), colour });
-        items.extend(best.iter().zip(points).map(|(subset, at)| Item::Label {
-            at,
-            text: in_words(&subset.photodiodes, photodiodes),
-            colour,
-            above: !(series.len() > 1 && lowest(series, subset)),
-        }));
-    }
+    items.extend(best.iter().zip(points).map(|(subset, at)| Item::Label {
+        at,
+        text: in_words(&subset.photodiodes, photodiodes),
+        colour: 0,
+        above: true,
+    }));
     let chart = Chart::new(title, "number of photodiodes", y_label, items, HEIGHT_PX).from_zero();
     draw_charts(&[chart], WIDTH, png, svg)
-}
-
-/// Whether no other subset of the same size has a lower error.
-fn lowest(series: &[SubsetSeries], subset: &Subset) -> bool {
-    let rivals = series.iter().flat_map(|one| &one.best).filter(|s| s.photodiodes.len() == subset.photodiodes.len());
-    rivals.filter(|s| s.error.is_finite()).all(|s| s.error >= subset.error)
 }
 
 /// `P1 P4`, `all but P3`, `all`: whichever is shorter.
@@ -97,7 +70,7 @@ fn in_words(subset: &[String], all: &[String]) -> String {
     }
 }
 
-/// Draws errors over how much was learnt from, with their spread as a band.
+/// Draws errors over how much was learnt from.
 ///
 /// # Errors
 /// A file that can't be written.
@@ -111,12 +84,7 @@ pub(in crate::predictor) fn draw_learning_curve(
 ) -> anyhow::Result<()> {
     let mut items = Vec::new();
     for (colour, one) in series.iter().enumerate() {
-        let band = one.points.iter().filter_map(|p| p.spread.map(|[low, high]| [p.x, low, high]));
-        let band = band.filter(|p| p.iter().all(|v| v.is_finite())).collect();
-        items.push(Item::Band { runs: vec![band], colour });
-    }
-    for (colour, one) in series.iter().enumerate() {
-        let points: Vec<[f64; 2]> = one.points.iter().map(|p| [p.x, p.y]).filter(|p| p[1].is_finite()).collect();
+        let points: Vec<[f64; 2]> = one.points.iter().copied().filter(|p| p[1].is_finite()).collect();
         items.push(Item::Line { name: Some(one.name.clone()), runs: vec![points.clone()], colour, width: 2 });
         items.push(Item::Dots { name: None, points, colour });
     }

@@ -17,7 +17,7 @@ mod tests;
 
 pub use bars::{BarSeries, Bars, draw_bars};
 pub(super) use bars::{MagnitudeBin, draw_bar_charts, draw_error_by_magnitude};
-pub(super) use curves::{CurvePoint, LearningSeries, Subset, SubsetSeries, draw_best_subsets, draw_learning_curve};
+pub(super) use curves::{LearningSeries, Subset, draw_best_subsets, draw_learning_curve};
 pub(super) use modes::{Modes, draw_modes};
 pub(super) use nails::draw_nails;
 pub(super) use over_time::draw_over_time;

@@ -40,9 +40,9 @@ fn panel(all: &Predicted<'_>, line: &TimeLine, target: usize, title: &str) -> Ch
     let mut predicted = Vec::new();
     let mut bands = Vec::new();
     for piece in &line.pieces {
-        let most = (MOST_BINS * piece.rows.len()).div_ceil(line.rows.max(1)).max(16);
+        let most = (MOST_BINS * piece.len()).div_ceil(line.rows.max(1)).max(16);
         let (mut curves, mut band) = (Thinned::of_at_most(most), Thinned::of_at_most(most / 2));
-        for row in piece.rows.clone() {
+        for row in piece.clone() {
             let known = |value: f64| value.is_finite().then_some([value, f64::NAN]);
             let truth = all.measured.and_then(|measured| known(measured[[row, target]]));
             curves.push(line.at[row], [truth, known(all.predicted[[row, target]])].into_iter());
@@ -99,13 +99,9 @@ struct TimeLine {
     /// The place of each row.
     at: Vec<f64>,
     /// Rows without a gap between them.
-    pieces: Vec<Piece>,
+    pieces: Vec<Range<usize>>,
     /// From and to of each recording.
     spans: Vec<[f64; 2]>,
-}
-
-struct Piece {
-    rows: Range<usize>,
 }
 
 impl TimeLine {
@@ -147,11 +143,11 @@ impl TimeLine {
         let mut start = one.start;
         for row in one.start + 1..one.end {
             if usual > 0.0 && self.at[row] - self.at[row - 1] > GAP * usual {
-                self.pieces.push(Piece { rows: start..row });
+                self.pieces.push(start..row);
                 start = row;
             }
         }
-        self.pieces.push(Piece { rows: start..one.end });
+        self.pieces.push(start..one.end);
     }
 
     /// Every second recording, to be shaded.

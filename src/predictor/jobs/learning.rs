@@ -11,7 +11,7 @@ use lunula_predictor::{
 
 use crate::files::{Places, WriteError};
 use crate::predictor::error::PredictorError;
-use crate::predictor::figures::{CurvePoint, LearningSeries, draw_learning_curve};
+use crate::predictor::figures::{LearningSeries, draw_learning_curve};
 use crate::table::{Column, TableWriter, Value};
 
 const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -78,10 +78,7 @@ pub(in crate::predictor) fn write(
                 name: format!("{target}, {name}"),
                 points: points
                     .iter()
-                    .filter_map(|point| {
-                        let y = point.held_out.as_ref()?.targets[k].rmse;
-                        Some(CurvePoint { x: point.rows as f64, y, spread: None })
-                    })
+                    .filter_map(|point| Some([point.rows as f64, point.held_out.as_ref()?.targets[k].rmse]))
                     .collect(),
             })
         })

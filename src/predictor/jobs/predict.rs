@@ -37,7 +37,7 @@ pub struct PredictFigures {
     /// The recording.
     pub data: PathBuf,
     /// The table of predictions.
-    pub out: Option<PathBuf>,
+    pub out: PathBuf,
     /// What is predicted.
     pub columns: Vec<String>,
     /// Rows.
@@ -93,7 +93,9 @@ pub fn predict(
     warnings.extend(read.warnings.iter().cloned());
     watch.go_on()?;
     if answering.needs_time() && !read.time_s.is_empty() && read.time_s.iter().all(|time| time.is_nan()) {
-        return Err(no_time(&data.display().to_string()));
+        let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the \
+                    time in seconds";
+        return Err(PredictorError::Request(format!("{}: {what}", data.display())));
     }
     let (answers, sds, contacts, counts) =
         stages.time("predict", || all_rows(&mut answering, &read, options.rows.keep_faults));
@@ -135,7 +137,16 @@ pub fn predict(
     }
     let ambient = ambient_step_of([data], &options.rows.log);
     let left_out = left_out(predict_plan(models.len(), ambient, options));
-    let figures = figures(data, Some(out), &answering, counts);
+    let figures = PredictFigures {
+        data: data.to_owned(),
+        out: out.to_owned(),
+        columns: answering.output_columns(),
+        rows: counts.rows,
+        rows_not_known: counts.not_known,
+        rows_outside: answering.outside(),
+        touch: counts.touch,
+        bending: counts.bending,
+    };
     let mut report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
     if !answering.is_gated() {
         report.unused(&Answering::GATES, Answering::NO_GATE);
@@ -181,25 +192,6 @@ fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec
         }
     }
     (answers, sds, contacts, counts)
-}
-
-fn no_time(whose: &str) -> PredictorError {
-    let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the time \
-                in seconds";
-    PredictorError::Request(format!("{whose}: {what}"))
-}
-
-fn figures(data: &Path, out: Option<&Path>, answering: &Answering, counts: Counts) -> PredictFigures {
-    PredictFigures {
-        data: data.to_owned(),
-        out: out.map(Path::to_owned),
-        columns: answering.output_columns(),
-        rows: counts.rows,
-        rows_not_known: counts.not_known,
-        rows_outside: answering.outside(),
-        touch: counts.touch,
-        bending: counts.bending,
-    }
 }
 
 /// What Parquet keeps beside the cells.

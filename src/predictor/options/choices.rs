@@ -49,28 +49,7 @@ impl Words for ModelChoice {
     ];
 }
 
-/// What is fitted to the scores of eigennails.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum RegressionChoice {
-    /// Linear, shrunk.
-    #[default]
-    Ridge,
-    /// A Gaussian process.
-    Process,
-}
-
-impl RegressionChoice {
-    /// As models have it.
-    #[must_use]
-    pub fn on_scores(self) -> OnScores {
-        match self {
-            Self::Ridge => OnScores::Ridge,
-            Self::Process => OnScores::Process,
-        }
-    }
-}
-
-impl Words for RegressionChoice {
+impl Words for OnScores {
     const WORDS: &'static [(Self, &'static str, &'static str)] =
         &[(Self::Ridge, "ridge", "Linear, shrunk"), (Self::Process, "process", "A Gaussian process, with its own SD")];
 }

@@ -1,16 +1,14 @@
 //! The options of the predictors' commands and of pipelines' stages, and what the jobs make of them.
 
 use clap::Args;
-use lunula_predictor::{By, Deficient, Gate, GateFault, Kind, Recipe};
+use lunula_predictor::{By, Deficient, Gate, GateFault, Kind, OnScores, Recipe};
 
 use crate::job::{not_negative, one_of};
 use crate::predictor::data::{RowOptions, Wanted};
 use crate::predictor::jobs::evaluate::EvaluateOptions;
 use crate::predictor::jobs::predict::PredictOptions;
 use crate::predictor::jobs::train::TrainOptions;
-use crate::predictor::options::choices::{
-    ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, RegressionChoice, share,
-};
+use crate::predictor::options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
 use crate::predictor::options::target::Target;
 
 fn level(text: &str) -> Result<f64, String> {
@@ -76,8 +74,8 @@ pub struct TrainChoices {
     #[command(flatten)]
     pub network: NetworkOptions,
     /// What eigennails fit to the scores
-    #[arg(long, value_parser = one_of::<RegressionChoice>(), default_value = "ridge")]
-    pub regression: RegressionChoice,
+    #[arg(long, value_parser = one_of::<OnScores>(), default_value = "ridge")]
+    pub regression: OnScores,
     /// Modes of eigennails [default: as many as do best on paths left out]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub modes: Option<u16>,
@@ -113,7 +111,7 @@ impl TrainChoices {
         let plain = self.network.recipe(self.model);
         let kind = match plain.kind {
             Kind::Eigennails { .. } => {
-                Kind::Eigennails { on_scores: self.regression.on_scores(), modes: self.modes.map(usize::from) }
+                Kind::Eigennails { on_scores: self.regression, modes: self.modes.map(usize::from) }
             }
             other => other,
         };

@@ -70,7 +70,7 @@ fn evaluation_pictures(
             .iter()
             .map(|bin| MagnitudeBin {
                 from: bin.from,
-                to: Some(bin.to),
+                to: bin.to,
                 rows: bin.merit.rows,
                 rmse: bin.merit.rmse.0.iter().map(|(_, rmse)| rmse.is_finite().then_some(*rmse)).collect(),
             })

@@ -3,7 +3,7 @@
 use crate::files::Staging;
 use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
-use crate::predictor::figures::{self, BarSeries, Bars, SubsetSeries, draw_bars, draw_best_subsets};
+use crate::predictor::figures::{BarSeries, Bars, Subset, draw_bars, draw_best_subsets};
 use crate::predictor::jobs::prune::report::{PruneReport, PruneRow};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
@@ -38,19 +38,13 @@ pub(super) fn write(report: &mut PruneReport, out: &Outputs, stages: &Stages) ->
         let drawn = stages.time("figures", || staging.draw("without-one", |png, svg| draw_bars(&bars, png, svg)));
         pictures.push(drawn?);
     }
-    let series = SubsetSeries {
-        name: "mean of the targets".to_owned(),
-        best: report
-            .best_of_size
-            .iter()
-            .filter_map(|row| Some(figures::Subset { photodiodes: row.inputs.clone(), error: row.score? }))
-            .collect(),
-    };
-    if out.figures && !series.best.is_empty() {
+    let subset = |row: &PruneRow| Some(Subset { photodiodes: row.inputs.clone(), error: row.score? });
+    let best: Vec<Subset> = report.best_of_size.iter().filter_map(subset).collect();
+    if out.figures && !best.is_empty() {
         let (title, label) = ("the best photodiodes of each number", "validation RMSE over the target's SD");
         pictures.push(stages.time("figures", || {
             staging.draw("best-of-size", |png, svg| {
-                draw_best_subsets(title, label, &report.inputs, &[series], png, svg)
+                draw_best_subsets(title, label, &report.inputs, "mean of the targets", &best, png, svg)
             })
         })?);
     }
