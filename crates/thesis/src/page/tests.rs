@@ -159,7 +159,7 @@ fn every_quantity_of_the_statements_is_computed() {
     let parts: Vec<PartFolder> = Part::all().map(|of| part(at, of, "", &[])).collect();
     for PartFolder { part, folder, .. } in &parts {
         tables_of(*part).iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
-        let write = |numbers| fs::write(folder.join("numbers.json"), Numbers(numbers).to_text()).unwrap();
+        let write = |numbers: Numbers| fs::write(folder.join("numbers.json"), numbers.to_text()).unwrap();
         let cycle = |drive, range| {
             let path = at.join("recording.csv");
             cycled(&path, drive, range);

@@ -17,7 +17,7 @@ use std::path::Path;
 use anyhow::Context as _;
 use serde::Serialize;
 
-use crate::section::people::{Person, Recorded};
+use crate::section::people::{AREA_M2, Person, Recorded};
 use lunula::hemodynamics::Pressed;
 use lunula::phantom::{refused, staged, write_record};
 use lunula::table::{Column, TableWriter, Value};
@@ -63,7 +63,7 @@ fn table(recorded: &Recorded, site: Pressed, path: &Path) -> anyhow::Result<()> 
     let columns = time.chain(["Fz_N", "pf1_Pa", "pf2_Pa", photodiode]).map(Column::number).collect();
     let mut table = TableWriter::create(path, path, columns, &[])?;
     for (row, &force_n) in recorded.force_n.iter().enumerate() {
-        let [proximal_pa, distal_pa] = site.of(force_n / Person::AREA_M2);
+        let [proximal_pa, distal_pa] = site.of(force_n / AREA_M2);
         let volts = recorded.recording.photodiodes[0].voltages_v[row];
         let time = recorded.times_s.iter().map(|times_s| times_s[row]);
         let cells: Vec<Value<'_>> = time.chain([-force_n, proximal_pa, distal_pa, volts]).map(Value::Number).collect();

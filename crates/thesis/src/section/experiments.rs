@@ -41,7 +41,8 @@ pub(crate) struct Presses {
     pub(crate) quick: [Vec<QuickPress>; 2],
 }
 
-const SITES: [Pressed; 2] = [Pressed::Proximal, Pressed::Distal];
+/// The places that people press on.
+pub(super) const SITES: [Pressed; 2] = [Pressed::Proximal, Pressed::Distal];
 
 impl Presses {
     /// Of the thesis' eight generated people about these parameters.
@@ -69,7 +70,7 @@ pub(super) fn figures(
     let literal = &Parameters::thesis();
     let people = presses.slow.iter().map(Vec::len).chain(presses.quick.iter().map(Vec::len)).max().unwrap_or(0);
     anyhow::ensure!(people > 0, "there are no presses");
-    text.number("people".to_owned(), Some(people as f64));
+    text.numbers.set("people", people as f64);
     let optics = Optics::BeerLambert;
     let calibrated = Settings { collapse: Collapse::Contact, optics, ..Settings::default() };
     for ((number, pressed), recorded) in [79, 81].into_iter().zip(SITES).zip(&presses.slow) {
@@ -141,25 +142,24 @@ fn slow(
         let (low, high) = ends(measured);
         let left = measured.iter().zip(&curve).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / samples as f64;
         let name = recording.subject.clone().unwrap_or_else(|| (k + 1).to_string());
-        let value = |of: Option<f64>| figure(of);
         let near = |force: f64| force_n.iter().position(|own| (own - force).abs() < NEAR_N);
         let change = |force: f64| near(force).map(|at| measured[at] - measured[0]);
         if k == recorded.len() {
             let name = |what: &str| format!("fig{number}.{what}");
-            text.number(name("change_to_1N_V"), change(1.0));
+            text.numbers.set(name("change_to_1N_V"), change(1.0));
             let halves = change(0.5).zip(change(1.0)).map(|(half, one)| (one - half) / half);
-            text.number(name("second_half_over_first"), halves);
+            text.numbers.set(name("second_half_over_first"), halves);
             let beyond = change(1.0).zip(change(2.0)).map(|(one, two)| (two - one) / one);
-            text.number(name("beyond_over_up_to_1N"), beyond);
-            text.number(name("left_share"), Some(left.sqrt() / (high - low)));
+            text.numbers.set(name("beyond_over_up_to_1N"), beyond);
+            text.numbers.set(name("left_share"), left.sqrt() / (high - low));
         }
         writeln!(
             text,
             "| {name} | {} | {} | {} | {} | {:.1} |",
-            value(diode.map(|one| one.offset.value)),
-            value(diode.map(|one| one.scaling.value)),
-            value(change(1.0)),
-            value(change(2.0)),
+            figure(diode.map(|one| one.offset.value)),
+            figure(diode.map(|one| one.scaling.value)),
+            figure(change(1.0)),
+            figure(change(2.0)),
             100.0 * left.sqrt() / (high - low)
         )?;
         let zero = measured[0];
@@ -270,11 +270,11 @@ fn quick(
     }
     for (way, name) in ["loading_s", "unloading_s"].into_iter().enumerate() {
         let all: Vec<f64> = found.iter().filter_map(|own| own[1][way]).collect();
-        text.number(format!("fig{number}.{name}"), Some(all.iter().sum::<f64>() / all.len() as f64));
+        text.numbers.set(format!("fig{number}.{name}"), all.iter().sum::<f64>() / all.len() as f64);
     }
     let ratios = found.iter().flat_map(|own| [0, 1].map(|way| own[1][way].zip(own[0][way])));
     let slowest = ratios.flatten().map(|(light, force)| light / force).reduce(f64::max);
-    text.number(format!("fig{number}.slowest_over_force"), slowest);
+    text.numbers.set(format!("fig{number}.slowest_over_force"), slowest);
     writeln!(text)?;
     let [png, svg] = ["png", "svg"].map(|ending| format!("fig-{number}.{ending}"));
     draw_panels(&charts, 2, 640, &staging.place(&png)?, &staging.place(&svg)?)

@@ -25,7 +25,6 @@ fn make<J: Job>(
     let name = J::KIND.name;
     let report = task.report::<J, _>(order.said, name, || {
         let SectionText { text, numbers } = work()?;
-        let numbers = Numbers(numbers);
         write_whole(&task.folder.join(format!("{name}.md")), text.as_bytes())?;
         write_whole(&task.folder.join("numbers.json"), numbers.to_text().as_bytes())?;
         Ok(SectionFigures { numbers })

@@ -56,8 +56,8 @@ pub(super) fn figure_88(text: &mut SectionText, parameters: &Parameters, staging
     let stepped = steps(parameters, Pressed::Proximal, &[LOAD_PA], RTOL)?;
     let constant =
         stepped.first().and_then(|one| change(&one.response.times_s, &one.response.photodiode_v(0)).constants_s[0]);
-    text.number("fig88.lag_s".to_owned(), lag_s(&times_s, &expected, &late));
-    text.number("fig88.constant_s".to_owned(), constant);
+    text.numbers.set("fig88.lag_s", lag_s(&times_s, &expected, &late));
+    text.numbers.set("fig88.constant_s", constant);
     let curve = |name: &str, values: Vec<f64>, colour: usize| Curve {
         name: Some(name.to_owned()),
         times_s: times_s.clone(),

@@ -17,12 +17,12 @@ mod statics;
 mod steps;
 mod tune;
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
 use lunula_hemodynamics::Parameters;
 
+use crate::numbers::Numbers;
 use crate::section::groups::{GROUPS, scaled};
 use experiments::Presses;
 pub(crate) use kind::{PressesJob, SectionJob};
@@ -54,7 +54,7 @@ pub(crate) struct SectionText {
     /// Tables, as Markdown.
     pub(crate) text: String,
     /// What the thesis' words speak of, by name: `fig76.vein_um`. Of the simulations, those of the literal values.
-    pub(crate) numbers: BTreeMap<String, f64>,
+    pub(crate) numbers: Numbers,
 }
 
 impl Write for SectionText {
@@ -64,13 +64,6 @@ impl Write for SectionText {
 }
 
 impl SectionText {
-    /// Keeps a number that is known.
-    fn number(&mut self, name: String, value: Option<f64>) {
-        if let Some(value) = value.filter(|value| value.is_finite()) {
-            self.numbers.insert(name, value);
-        }
-    }
-
     /// Keeps what a signal does from the lowest to the highest load: its change, how far that is from proportional, its
     /// time constants.
     fn signal(&mut self, figure: &str, name: &str, unit: &str, changes: &[(f64, Change)]) {
@@ -78,13 +71,13 @@ impl SectionText {
         if *load_pa < TUNED_AT_PA {
             return;
         }
-        self.number(format!("{figure}.{name}_{unit}"), Some(last.size));
+        self.numbers.set(format!("{figure}.{name}_{unit}"), last.size);
         let before = changes.iter().rev().nth(1).map(|(_, before)| before.size);
         let increments = before.map(|before| (last.size - before) / first.size);
-        self.number(format!("{figure}.{name}_disproportion"), increments.map(|ratio| (1.0 - ratio).abs()));
+        self.numbers.set(format!("{figure}.{name}_disproportion"), increments.map(|ratio| (1.0 - ratio).abs()));
         for (way, k) in [("loading", 0), ("unloading", 1)] {
-            self.number(format!("{figure}.{name}_{way}_low_s"), first.constants_s[k]);
-            self.number(format!("{figure}.{name}_{way}_high_s"), last.constants_s[k]);
+            self.numbers.set(format!("{figure}.{name}_{way}_low_s"), first.constants_s[k]);
+            self.numbers.set(format!("{figure}.{name}_{way}_high_s"), last.constants_s[k]);
         }
     }
 }

@@ -33,8 +33,10 @@ pub(crate) const PRESSED_S: f64 = 0.5;
 pub(crate) const RELEASED_S: f64 = 2.5;
 const QUICKLY_S: f64 = 0.15;
 const HELD_N: f64 = 1.0;
-/// Of the first of the thesis' eight people.
-const FIRST_SEED: u64 = 430;
+/// The force's area, m2: a newton is 1 N/cm2.
+pub(crate) const AREA_M2: f64 = 1e-4;
+/// Seed of the first of the thesis' eight people, as docs/src/thesis/section-4-3.md has them.
+pub(crate) const FIRST_SEED: u64 = 430;
 
 /// A generated person.
 #[derive(Debug, Clone)]
@@ -63,8 +65,6 @@ fn normals(seed: u64) -> impl FnMut() -> f64 {
 impl Person {
     /// How many there are in the thesis.
     pub(crate) const COUNT: usize = 8;
-    /// The force's area, m2: a newton is 1 N/cm2.
-    pub(crate) const AREA_M2: f64 = 1e-4;
     /// What `k_C`, `b_C`, `k_V` and `b_V` of the thesis' table are multiplied by to have its measured time constants,
     /// see docs/src/thesis/section-4-3.md.
     const TUNED: [f64; 4] =
@@ -107,8 +107,8 @@ impl Person {
     /// A model without an answer.
     pub(crate) fn slowly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
         let force_n: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
-        let pressures = |k: usize| force_n.iter().map(|force| pressed.of(force / Self::AREA_M2)[k]).collect();
-        let recording = Recording::steady(pressures(0), pressures(1), vec![self.unknown(pressed, force_n.len())]);
+        let [proximal, distal] = pressures(pressed, &force_n);
+        let recording = Recording::steady(proximal, distal, vec![trace(pressed, vec![0.0; force_n.len()])]);
         self.recorded(recording, force_n, None, 1.0 / 3.0_f64.sqrt(), pressed)
     }
 
@@ -128,22 +128,16 @@ impl Person {
         };
         let true_n: Vec<f64> = times_s.iter().map(|&time_s| force(time_s)).collect();
         let force_n: Vec<f64> = true_n.iter().map(|force| force + FORCE_NOISE_N * normal()).collect();
-        let of = |forces: &[f64], k: usize| {
-            let pressures: Vec<f64> = forces.iter().map(|force| pressed.of(force / Self::AREA_M2)[k]).collect();
-            Load::table(&times_s, &pressures).map_err(|why| HemodynamicsError::Model(why.to_string()))
-        };
         let with = |forces: &[f64]| -> Result<Recording, HemodynamicsError> {
-            let unknown = vec![self.unknown(pressed, times_s.len())];
-            Ok(Recording::transient(times_s.clone(), of(forces, 0)?, of(forces, 1)?, unknown))
+            let [proximal, distal] = pressures(pressed, forces)
+                .map(|pa| Load::table(&times_s, &pa).map_err(|why| HemodynamicsError::Model(why.to_string())));
+            let unknown = vec![trace(pressed, vec![0.0; times_s.len()])];
+            Ok(Recording::transient(times_s.clone(), proximal?, distal?, unknown))
         };
         let found = self.recorded(with(&true_n)?, force_n.clone(), Some(times_s.clone()), 1.0, pressed)?;
         let mut recording = with(&force_n)?.of(&self.name);
         recording.photodiodes = found.recording.photodiodes;
         Ok(Recorded { recording, ..found })
-    }
-
-    fn unknown(&self, pressed: Pressed, samples: usize) -> Trace {
-        Trace::new(usize::from(pressed == Pressed::Distal), vec![0.0; samples])
     }
 
     /// The model's answer with noise.
@@ -163,6 +157,16 @@ impl Person {
         recording.photodiodes[0].voltages_v = noisy;
         Ok(Recorded { recording: recording.of(&self.name), force_n, times_s })
     }
+}
+
+/// The loads of forces on a place, Pa: proximal and distal.
+pub(crate) fn pressures(pressed: Pressed, force_n: &[f64]) -> [Vec<f64>; 2] {
+    [0, 1].map(|k| force_n.iter().map(|force| pressed.of(force / AREA_M2)[k]).collect())
+}
+
+/// The photodiode of the pressed place.
+pub(crate) fn trace(pressed: Pressed, volts: Vec<f64>) -> Trace {
+    Trace::new(usize::from(pressed == Pressed::Distal), volts)
 }
 
 /// The least and the greatest.

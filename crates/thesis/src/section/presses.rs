@@ -13,11 +13,11 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 
-use super::experiments::{Presses, QuickPress};
-use super::people::{Person, Recorded};
+use super::experiments::{Presses, QuickPress, SITES};
+use super::people::{Recorded, pressures, trace};
 use lunula::hemodynamics::Pressed;
 use lunula::table::Table;
-use lunula_hemodynamics::{Load, Recording, Trace};
+use lunula_hemodynamics::{Load, Recording};
 
 /// Between two forces of a static curve, newtons.
 const STEP_N: f64 = 0.05;
@@ -53,7 +53,7 @@ struct Pressing {
 pub(crate) fn read_presses(files: &[PressFile<'_>]) -> anyhow::Result<Presses> {
     let all = files.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?;
     let mut presses = Presses::default();
-    for (k, site) in [Pressed::Proximal, Pressed::Distal].into_iter().enumerate() {
+    for (k, site) in SITES.into_iter().enumerate() {
         let own = || all.iter().filter(move |one| one.site == site);
         let reach =
             own().filter(|one| one.times_s.is_none()).map(|one| one.force_n.iter().copied().fold(0.0, f64::max));
@@ -97,10 +97,6 @@ fn read(file: &PressFile<'_>) -> anyhow::Result<Pressing> {
     Ok(Pressing { subject: file.subject.to_owned(), site, times_s, force_n, volts: of(&volts) })
 }
 
-fn pressures(one: &Pressing, force_n: &[f64], k: usize) -> Vec<f64> {
-    force_n.iter().map(|force| one.site.of(force / Person::AREA_M2)[k]).collect()
-}
-
 fn slow(one: &Pressing, reach: f64) -> anyhow::Result<Recorded> {
     let mut points: Vec<[f64; 2]> = one.force_n.iter().zip(&one.volts).map(|(&force, &volts)| [force, volts]).collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -110,8 +106,8 @@ fn slow(one: &Pressing, reach: f64) -> anyhow::Result<Recorded> {
     }
     let force_n: Vec<f64> = (0..=steps).map(|k| STEP_N * k as f64).collect();
     let volts = force_n.iter().map(|&force| between(&points, force)).collect();
-    let trace = Trace::new(usize::from(one.site == Pressed::Distal), volts);
-    let recording = Recording::steady(pressures(one, &force_n, 0), pressures(one, &force_n, 1), vec![trace]);
+    let [proximal, distal] = pressures(one.site, &force_n);
+    let recording = Recording::steady(proximal, distal, vec![trace(one.site, volts)]);
     Ok(Recorded { recording: recording.of(&one.subject), force_n, times_s: None })
 }
 
@@ -140,10 +136,10 @@ fn quick(one: &Pressing, times_s: &[f64]) -> anyhow::Result<QuickPress> {
     };
     let begins = (0..up).rev().find(|&at| one.force_n[at] <= LEAVES * held).unwrap_or(0);
     let ends = (up..=down).rev().find(|&at| one.force_n[at] >= (1.0 - LEAVES) * held).unwrap_or(down);
-    let load =
-        |k: usize| Load::table(times_s, &pressures(one, &one.force_n, k)).map_err(|why| anyhow::anyhow!("{why}"));
-    let trace = Trace::new(usize::from(one.site == Pressed::Distal), one.volts.clone());
-    let recording = Recording::transient(times_s.to_vec(), load(0)?, load(1)?, vec![trace]).of(&one.subject);
+    let [proximal, distal] =
+        pressures(one.site, &one.force_n).map(|pa| Load::table(times_s, &pa).map_err(|why| anyhow::anyhow!("{why}")));
+    let trace = trace(one.site, one.volts.clone());
+    let recording = Recording::transient(times_s.to_vec(), proximal?, distal?, vec![trace]).of(&one.subject);
     let recorded = Recorded { recording, force_n: one.force_n.clone(), times_s: Some(times_s.to_vec()) };
     // A tenth of a second at the end is averaged.
     let moments_s = [times_s[begins], times_s[ends], times_s[last] - 0.1];

@@ -67,7 +67,7 @@ fn tell(text: &mut SectionText, name: &str, found: &Curve, unit: usize) -> anyho
     let slope = |[from, to]: &[f64; 2]| at(*from).zip(at(*to)).map(|(low, high)| (high - low) / (to - from));
     if name == LITERAL {
         for part in &PARTS {
-            text.number(format!("fig78.VP{}_slope_{}_to_{}", unit + 1, part[0], part[1]), slope(part));
+            text.numbers.set(format!("fig78.VP{}_slope_{}_to_{}", unit + 1, part[0], part[1]), slope(part));
         }
     }
     let words = |part| slope(part).map_or("-".to_owned(), |slope: f64| format!("{slope:.2}"));

@@ -4,9 +4,9 @@
 use lunula_hemodynamics::Parameters;
 use rayon::prelude::*;
 
+use super::experiments::SITES;
 use super::steps::{change, steps};
 use crate::section::groups::scaled;
-use lunula::hemodynamics::Pressed;
 
 /// Tenfold either way.
 const MOST: f64 = std::f64::consts::LN_10;
@@ -19,7 +19,7 @@ const STEPS: [f64; 2] = [0.8, 2e-3];
 /// distal steps.
 pub(super) fn constants_s(parameters: &Parameters, load_pa: f64) -> Option<[f64; 4]> {
     let mut found = [0.0; 4];
-    for (k, pressed) in [Pressed::Proximal, Pressed::Distal].into_iter().enumerate() {
+    for (k, pressed) in SITES.into_iter().enumerate() {
         let stepped = steps(parameters, pressed, &[load_pa], 1e-5).ok()?;
         let response = &stepped[0].response;
         let [loading, unloading] = change(&response.times_s, &response.photodiode_v(k)).constants_s;
