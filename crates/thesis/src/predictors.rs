@@ -11,6 +11,7 @@ use anyhow::Context;
 use serde_json::Value;
 
 use super::Numbers;
+use super::responses::is_photodiode;
 use lunula::table::{Table, TableError};
 
 fn texts(table: &Table, name: &str) -> Result<Vec<String>, TableError> {
@@ -102,8 +103,7 @@ pub(crate) fn modes_numbers(folder: &Path) -> Result<Numbers, TableError> {
     numbers.set("least_dominance", forces.iter().map(|(_, share)| *share).reduce(f64::min));
     let which: std::collections::BTreeSet<usize> = forces.iter().map(|(which, _)| *which).collect();
     numbers.set("different_forces", (!which.is_empty()).then_some(which.len() as f64));
-    let photodiode = |name: &str| name.strip_prefix('P').is_some_and(|number| number.parse::<u32>().is_ok());
-    let shares = greatest(&photodiode)?.into_iter().flatten().map(|(_, share)| share);
+    let shares = greatest(&is_photodiode)?.into_iter().flatten().map(|(_, share)| share);
     numbers.set("greatest_photodiode", shares.reduce(f64::max));
     Ok(numbers)
 }

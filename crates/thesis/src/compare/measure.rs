@@ -147,12 +147,9 @@ fn posture(person: &Person, options: &CompareOptions, fits: &mut Fits<'_>) -> Re
     let mut by_model = Vec::new();
     for recipe in &options.models {
         let model = fits.fit(recipe, &first)?;
-        by_model.push([&first, &second, &random].map(|data| rmse(model.as_ref(), data)));
+        let by_rows = [&first, &second, &random].map(|data| rmse(model.as_ref(), data));
+        by_model.push(by_rows.into_iter().collect::<Result<Vec<_>, _>>()?);
     }
-    let by_model = by_model
-        .into_iter()
-        .map(|by_rows| by_rows.into_iter().collect::<Result<Vec<_>, _>>())
-        .collect::<Result<Vec<_>, _>>()?;
     let groups = ["training", "validation", "random bending"].map(str::to_owned);
     let models: Vec<String> = options.models.iter().map(|recipe| recipe.kind.to_string()).collect();
     let title = "posture models on the first half, the second half and random bending";

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, ensure};
 use lunula_predictor::FORCES;
 
+use crate::responses::is_photodiode;
 use lunula::table::{Column, Table, TableWriter, Value};
 
 /// A recording.
@@ -46,10 +47,6 @@ impl OverTime {
             _ => f64::NAN,
         }
     }
-}
-
-fn is_photodiode(name: &str) -> bool {
-    name.strip_prefix('P').is_some_and(|number| number.parse::<u32>().is_ok())
 }
 
 impl Pair {

@@ -38,6 +38,7 @@ pub use request::StudyRequest;
 use session::{Session, sessions};
 pub use write::{StudyError, StudySummary, write_watched};
 
+use crate::section::people::FIRST_SEED;
 use lunula::hemodynamics::Pressed;
 use lunula::job::{Keys, OptionFault, read};
 use lunula::phantom::photos::{LightKind, PhotoOptions};
@@ -49,15 +50,14 @@ use presses::PressOptions;
 /// The tables' folder, and which of its files says what was asked for.
 const TABLES: &str = "tables";
 const RECORD: &str = "study.json";
-/// Seed of the first of the thesis' eight people who press, as docs/src/thesis/section-4-3.md has them.
-const FIRST_PRESS: u64 = 430;
 
 /// What a recording is of.
 #[derive(Debug, Clone)]
 enum Entry {
     Photos,
-    Session { subject: String, session: Session },
-    Press { subject: String, site: &'static str },
+    Session(Session),
+    /// On this place.
+    Press(&'static str),
 }
 
 /// A study, settled.
@@ -65,7 +65,7 @@ enum Entry {
 pub struct Study {
     options: StudyOptions,
     subjects: Vec<String>,
-    entries: Vec<(String, Entry, Recording)>,
+    entries: Vec<(StudyRecording, Entry)>,
 }
 
 /// One recording of a study.
@@ -111,26 +111,30 @@ impl Study {
             ..PhotoOptions::default()
         };
         let subjects: Vec<String> = (0..options.subjects).map(|k| photos.subject_name(k)).collect();
-        let mut entries = vec![("photos".to_owned(), Entry::Photos, Recording::Photos(photos))];
+        let of = |name: String, subject: Option<&String>, recording: Recording| StudyRecording {
+            name,
+            subject: subject.cloned(),
+            recording,
+        };
+        let mut entries = vec![(of("photos".to_owned(), None, Recording::Photos(photos)), Entry::Photos)];
         for (subject, name) in (0..options.sensors).zip(&subjects) {
             for (number, session) in sessions(subject) {
                 let recording = session.recording(&options, subject, number);
-                let entry = Entry::Session { subject: name.clone(), session };
-                entries.push((format!("{name}/{}", session.name), entry, recording));
+                let one = of(format!("{name}/{}", session.name), Some(name), recording);
+                entries.push((one, Entry::Session(session)));
             }
         }
         for (k, name) in (0..options.presses).zip(&subjects) {
             for site in [Pressed::Proximal, Pressed::Distal] {
-                let seed = options.seed.wrapping_sub(1).wrapping_mul(10_000).wrapping_add(FIRST_PRESS + u64::from(k));
-                let press = PressOptions { name: name.clone(), seed, site };
-                let entry = Entry::Press { subject: name.clone(), site: site.word() };
-                entries.push((format!("presses/{name}-{}", site.word()), entry, Recording::Press(press)));
+                let seed = options.seed.wrapping_sub(1).wrapping_mul(10_000).wrapping_add(FIRST_SEED + u64::from(k));
+                let press = Recording::Press(PressOptions { name: name.clone(), seed, site });
+                let one = of(format!("presses/{name}-{}", site.word()), Some(name), press);
+                entries.push((one, Entry::Press(site.word())));
             }
         }
         // All videos are alike, and all logs: what is wrong with one is said once.
         let mut faults = Faults::default();
-        for fault in entries.iter().filter_map(|(_, _, recording)| recording.check().err()).flat_map(|faults| faults.0)
-        {
+        for fault in entries.iter().filter_map(|(one, _)| one.recording.check().err()).flat_map(|faults| faults.0) {
             if !faults.0.contains(&fault) {
                 faults.0.push(fault);
             }
@@ -151,10 +155,6 @@ impl Study {
         &self.subjects
     }
 
-    fn entries(&self) -> impl Iterator<Item = (&str, &Entry, &Recording)> {
-        self.entries.iter().map(|(name, entry, recording)| (name.as_str(), entry, recording))
-    }
-
     /// The texts of the tables, by place under the study's folder.
     #[must_use]
     pub fn tables(&self) -> BTreeMap<String, String> {
@@ -164,15 +164,8 @@ impl Study {
     /// All recordings, the tables last. No name is another's beginning up to a `/`.
     #[must_use]
     pub fn recordings(&self) -> Vec<StudyRecording> {
-        let own = self.entries().map(|(name, entry, recording)| StudyRecording {
-            name: name.to_owned(),
-            subject: match entry {
-                Entry::Photos => None,
-                Entry::Session { subject, .. } | Entry::Press { subject, .. } => Some(subject.clone()),
-            },
-            recording: recording.clone(),
-        });
         let tables = Recording::Texts(tables::tables(self));
-        own.chain([StudyRecording { name: TABLES.to_owned(), subject: None, recording: tables }]).collect()
+        let tables = StudyRecording { name: TABLES.to_owned(), subject: None, recording: tables };
+        self.entries.iter().map(|(one, _)| one.clone()).chain([tables]).collect()
     }
 }

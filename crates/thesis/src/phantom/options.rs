@@ -31,24 +31,7 @@ impl StudyOptions {
     pub const SENSORS: u32 = 7;
     /// More people than anybody has.
     pub const MOST: u32 = 9_999;
-}
 
-impl Default for StudyOptions {
-    fn default() -> Self {
-        Self {
-            seed: 1,
-            subjects: 16,
-            sensors: Self::SENSORS,
-            presses: Person::COUNT as u32,
-            width: 640,
-            height: 360,
-            fps: 30.0,
-            seconds: 60.0,
-        }
-    }
-}
-
-impl StudyOptions {
     /// Checks whether this study can be made; its videos and logs are checked by [`Study::new`](super::Study::new).
     ///
     /// # Errors
@@ -65,5 +48,20 @@ impl StudyOptions {
             }
         }
         faults.none()
+    }
+}
+
+impl Default for StudyOptions {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            subjects: 16,
+            sensors: Self::SENSORS,
+            presses: Person::COUNT as u32,
+            width: 640,
+            height: 360,
+            fps: 30.0,
+            seconds: 60.0,
+        }
     }
 }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::trials::trials;
-use super::{Entry, RECORD, Study, TABLES};
+use super::{Entry, RECORD, Study, StudyRecording, TABLES};
 use lunula::phantom::Generated as _;
 use lunula::phantom::nail::Subject;
 
@@ -22,20 +22,21 @@ const SKINS: [(f64, &str); 3] = [(7.0 / 16.0, "white"), (14.0 / 16.0, "Asian"), 
 pub(super) fn tables(study: &Study) -> BTreeMap<String, String> {
     let (mut sessions, mut presses) = (SESSIONS.to_owned(), PRESSES.to_owned());
     let up = format!("{}/", TABLES.split('/').map(|_| "..").collect::<Vec<_>>().join("/"));
-    for (name, entry, recording) in study.entries() {
+    for (StudyRecording { name, subject, recording }, entry) in &study.entries {
         let files = recording.files();
+        let subject = subject.as_deref().unwrap_or_default();
         let file = |file: &str| {
             if files.iter().any(|own| own == file) { format!("{up}{name}/{file}") } else { String::new() }
         };
         match entry {
             Entry::Photos => {}
-            Entry::Session { subject, session } => {
+            Entry::Session(session) => {
                 let cells = ["video.mp4", "markers.toml", "log.csv", "truth/joints.csv", "truth/log.csv"].map(file);
                 let (own, kind, repetition) = (session.name, session.kind, session.repetition);
                 // Writing to a text does not fail.
                 let _ = writeln!(sessions, "{subject},{own},{kind},{repetition},{}", cells.join(","));
             }
-            Entry::Press { subject, site } => {
+            Entry::Press(site) => {
                 for kind in ["slow", "quick"] {
                     let [recording, truth] = [format!("{kind}.csv"), "truth/parameters.toml".to_owned()];
                     let _ = writeln!(presses, "{subject},{site},{kind},{},{}", file(&recording), file(&truth));

@@ -112,11 +112,11 @@ pub(super) fn outputs(
             PANEL[1],
         )
     };
-    let words =
-        ["Photodiodes at their places on the nail,", "distal at the top, seen from above.", "One scale: the axes"]
-            .map(str::to_owned);
-    let mut words = words.to_vec();
-    words[2] = format!("One scale: every axis spans {}.", volts(span));
+    let words = vec![
+        "Photodiodes at their places on the nail,".to_owned(),
+        "distal at the top, seen from above.".to_owned(),
+        format!("One scale: every axis spans {}.", volts(span)),
+    ];
     arranged(&names, places, (words, Vec::new()), panel, png, svg)
 }
 

@@ -37,7 +37,7 @@ use lunula::predictor::DataFile;
 use lunula::stages::{Stages, Step, left_out};
 use lunula::table::TableError;
 pub(crate) use places::Places;
-pub(crate) use recording::Recording;
+pub(crate) use recording::{Recording, is_photodiode};
 
 /// Forces and angles that may go up and down.
 pub(crate) const DRIVES: [&str; 6] = ["Fx_N", "Fy_N", "Fz_N", "J1_deg", "J2_deg", "J3_deg"];
@@ -288,9 +288,8 @@ impl<'a> Averages<'a> {
         };
         let outputs: Vec<(String, &[f64])> =
             first.outputs.iter().map(|channel| (channel.name.clone(), &channel.values[rows.clone()])).collect();
-        staging.draw("outputs", |png, svg| {
-            figures::outputs(&first.time_s[rows.clone()], &outputs, places, png, svg)
-        })?;
+        staging
+            .draw("outputs", |png, svg| figures::outputs(&first.time_s[rows.clone()], &outputs, places, png, svg))?;
         staging.draw("averages", |png, svg| figures::averages(&self.curves, &options.drive, places, png, svg))?;
         if let (true, Some(j2), Some(j3)) = (bending, first.of("J2_deg"), first.of("J3_deg"))
             && let Some(([offset, slope], r2)) = straight(j2, j3)

@@ -6,12 +6,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::ResponsesError;
+use super::{DRIVES, ResponsesError};
 use lunula::log::{Channel, LogReading};
 use lunula::table::{Table, TableError};
-
-/// Forces and angles that are read where they are there.
-const MOVES: [&str; 6] = ["Fx_N", "Fy_N", "Fz_N", "J1_deg", "J2_deg", "J3_deg"];
 
 /// A recording, row by row; NaN where something is missing.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,8 +68,8 @@ impl Recording {
             let names = table.names().iter().filter(|name| wanted(name));
             names.map(|name| Ok(Channel { name: name.clone(), values: table.values(name)? })).collect()
         };
-        let mut outputs = channels(&|name| number_of(name).is_some())?;
-        let moves = channels(&|name| MOVES.contains(&name))?;
+        let mut outputs = channels(&is_photodiode)?;
+        let moves = channels(&|name| DRIVES.contains(&name))?;
         let mut faulty = vec![false; table.rows()];
         if table.has("sensor_status") {
             table.each_text("sensor_status", |row, text| faulty[row] = !matches!(text, "" | "ok"))?;
@@ -91,7 +88,7 @@ impl Recording {
     fn of_log(path: &Path, name: &str) -> Result<Self, ResponsesError> {
         let lit = LogReading::default().lit_rows(path)?.samples;
         let mut outputs: Vec<Channel> =
-            lit.photodiodes.into_iter().filter(|channel| number_of(&channel.name).is_some()).collect();
+            lit.photodiodes.into_iter().filter(|channel| is_photodiode(&channel.name)).collect();
         let faulty: Vec<bool> = lit.faults.iter().map(|words| !words.is_empty()).collect();
         let count = forget(&mut outputs, &faulty);
         Ok(Self {
@@ -113,8 +110,12 @@ fn forget(outputs: &mut [Channel], faulty: &[bool]) -> usize {
     faulty.iter().filter(|faulty| **faulty).count()
 }
 
-/// The number of a photodiode's column.
-pub(super) fn number_of(name: &str) -> Option<u32> {
+/// Whether a column is a photodiode's: P1, P2, ..
+pub(crate) fn is_photodiode(name: &str) -> bool {
+    number_of(name).is_some()
+}
+
+fn number_of(name: &str) -> Option<u32> {
     name.strip_prefix('P')?.parse().ok()
 }
 
