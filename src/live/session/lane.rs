@@ -109,40 +109,7 @@ impl<'a> Lane<'a> {
     /// # Errors
     /// A source that can't go on, columns that lack, results that can't be written.
     pub(super) fn poll(&mut self, shared: &mut Shared<'_>) -> Result<(), LiveError> {
-        let Self { feed, work, .. } = self;
-        let Feed { source, stream, recognizer, health } = feed;
-        let is_live = stream.is_live();
-        let mut fault = None;
-        let now_ns = shared.clock.now_ns();
-        let mut on = |event: Event<'_>| {
-            if fault.is_some() || shared.ends {
-                return;
-            }
-            let done = match event {
-                Event::Columns(_) => work.begin(recognizer.take(), shared),
-                Event::Row(row) => {
-                    // Of a recording many rows are handed out at one time.
-                    let begin_ns = if is_live { row.host_ns } else { shared.clock.now_ns() };
-                    health.row(row, &mut shared.arrival);
-                    let common_s = health.common_s(row);
-                    let done = work.row(row, common_s, shared);
-                    shared.work.record_ns(shared.clock.now_ns().saturating_sub(begin_ns));
-                    done
-                }
-                Event::Spoilt { .. } => {
-                    health.spoilt();
-                    Ok(())
-                }
-                Event::State(state) => {
-                    shared.state((&work.label, work.place), false, state);
-                    if is_away(state.condition) { work.lose(false, shared) } else { Ok(()) }
-                }
-                Event::End => work.lose(true, shared),
-            };
-            fault = done.err();
-        };
-        stream.poll(now_ns, &mut on).map_err(|why| source_fault(source, why))?;
-        fault.map_or(Ok(()), Err)
+        self.work.take(&mut self.feed, false, shared)
     }
 
     /// Takes what has come from the force transducer.
@@ -150,35 +117,7 @@ impl<'a> Lane<'a> {
     /// # Errors
     /// As [`poll`](Self::poll).
     pub(super) fn poll_force(&mut self, shared: &mut Shared<'_>) -> Result<(), LiveError> {
-        let Self { force: Some(feed), work, .. } = self else { return Ok(()) };
-        let Feed { source, stream, recognizer, health } = feed;
-        let mut fault = None;
-        let now_ns = shared.clock.now_ns();
-        let mut on = |event: Event<'_>| {
-            if fault.is_some() {
-                return;
-            }
-            let done = match event {
-                Event::Columns(_) => work.join(recognizer.take().values, shared),
-                Event::Row(row) => {
-                    health.row(row, &mut shared.arrival);
-                    let common_s = health.common_s(row);
-                    work.force(row, common_s, shared)
-                }
-                Event::Spoilt { .. } => {
-                    health.spoilt();
-                    Ok(())
-                }
-                Event::State(state) => {
-                    shared.state((&work.label, work.place), true, state);
-                    Ok(())
-                }
-                Event::End => work.end_forces(shared),
-            };
-            fault = done.err();
-        };
-        stream.poll(now_ns, &mut on).map_err(|why| source_fault(source, why))?;
-        fault.map_or(Ok(()), Err)
+        self.force.as_mut().map_or(Ok(()), |feed| self.work.take(feed, true, shared))
     }
 
     /// When a watchdog lets go, nanoseconds of the host's clock; within a second.
@@ -208,6 +147,50 @@ impl<'a> Lane<'a> {
 }
 
 impl Work {
+    /// Takes what has come from a source: the sensor, or the force transducer.
+    fn take(&mut self, feed: &mut Feed<'_>, is_force: bool, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        let Feed { source, stream, recognizer, health } = feed;
+        let is_live = stream.is_live();
+        let mut fault = None;
+        let now_ns = shared.clock.now_ns();
+        let mut on = |event: Event<'_>| {
+            // Forces are heard on: rows that are recorded wait for them.
+            if fault.is_some() || shared.ends && !is_force {
+                return;
+            }
+            let done = match event {
+                Event::Columns(_) if is_force => self.join(recognizer.take().values, shared),
+                Event::Columns(_) => self.begin(recognizer.take(), shared),
+                Event::Row(row) => {
+                    // Of a recording many rows are handed out at one time.
+                    let begin_ns = if is_live { row.host_ns } else { shared.clock.now_ns() };
+                    health.row(row, &mut shared.arrival);
+                    let common_s = health.common_s(row);
+                    if is_force {
+                        self.force(row, common_s, shared)
+                    } else {
+                        let done = self.row(row, common_s, shared);
+                        shared.work.record_ns(shared.clock.now_ns().saturating_sub(begin_ns));
+                        done
+                    }
+                }
+                Event::Spoilt { .. } => {
+                    health.spoilt();
+                    Ok(())
+                }
+                Event::State(state) => {
+                    shared.state((&self.label, self.place), is_force, state);
+                    if !is_force && is_away(state.condition) { self.lose(false, shared) } else { Ok(()) }
+                }
+                Event::End if is_force => self.end_forces(shared),
+                Event::End => self.lose(true, shared),
+            };
+            fault = done.err();
+        };
+        stream.poll(now_ns, &mut on).map_err(|why| source_fault(source, why))?;
+        fault.map_or(Ok(()), Err)
+    }
+
     /// The sensor's columns are known.
     fn begin(&mut self, columns: StreamColumns, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         let Some(plan) = self.plan.take() else { return Ok(()) };
