@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lunula_live::source::{Address, OfFinger};
-use lunula_predictor::GateFault;
 
 use crate::job::number;
 use crate::log::LogReading;
@@ -123,14 +122,4 @@ fn volts(text: &str) -> Result<f64, String> {
 
 fn seconds(text: &str) -> Result<f64, String> {
     number(text).ok().filter(|s| *s > 0.0).ok_or_else(|| "write seconds above 0".to_owned())
-}
-
-impl AnswerOptions {
-    /// The gate.
-    ///
-    /// # Errors
-    /// Thresholds that can't be.
-    pub fn gate(&self) -> Result<lunula_predictor::Gate, GateFault> {
-        self.gate.gate()
-    }
 }

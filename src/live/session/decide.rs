@@ -9,13 +9,14 @@ use lunula_live::wire::Row;
 use lunula_predictor::Contact;
 
 use super::columns::StreamColumns;
-use super::outputs::pointer::{Mouse, PointerOutput};
+use super::outputs::pointer::PointerOutput;
 use super::outputs::recording::Recording;
 use super::outputs::samples::Samples;
 use super::outputs::switch::SwitchOutput;
 use super::outputs::{AnswerRow, Outputs};
 use super::sensor::Sensor;
 use crate::live::error::LiveError;
+use crate::live::options::MouseFiles;
 use crate::live::view::{Seen, View};
 use crate::log::{LogReading, PRECEDING_RULE};
 use crate::predictor::Answering;
@@ -35,7 +36,7 @@ pub(super) struct Plan {
     pub(super) answering: Option<Answering>,
     pub(super) keep_faults: bool,
     pub(super) switch: Option<Switch>,
-    pub(super) mouse: Option<Mouse>,
+    pub(super) mouse: Option<(pointer::Config, MouseFiles)>,
     /// Whether a second device gives forces.
     pub(super) joins_forces: bool,
 }
@@ -103,7 +104,7 @@ impl Decide {
                 let sensor = Sensor::new(answering, &columns, log, keep_faults).map_err(LiveError::Request)?;
                 let name = finger.as_ref().map(|(name, _)| name.clone());
                 let switch = switch.map(|switch| SwitchOutput::new(switch, name, &predicts, &columns)).transpose()?;
-                let pointer = mouse.map(|mouse| PointerOutput::new(mouse, &predicts)).transpose()?;
+                let pointer = mouse.map(|(config, files)| PointerOutput::new(config, &files, &predicts)).transpose()?;
                 Some(Answers { sensor, switch, pointer, touch: 0, bending: 0, text: String::with_capacity(512) })
             }
         };

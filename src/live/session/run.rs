@@ -14,7 +14,7 @@ use super::feed::Feed;
 use super::fingers::{Finger, fingers, of_finger, predicted_beside};
 use super::lane::{Lane, Shared};
 use super::outputs::Outputs;
-use super::outputs::pointer::{Mouse, read_mouse};
+use super::outputs::pointer::read_mouse;
 use super::outputs::recording::Recording;
 use super::report::{Ended, REPORT, SessionReport, report};
 use crate::files::{Places, beside};
@@ -57,7 +57,7 @@ pub fn live(
     watch: &Watch<'_>,
 ) -> Result<SessionReport, LiveError> {
     let all = fingers(&options.stream, files)?;
-    let gate = options.answer.gate().map_err(|why| LiveError::Request(why.to_string()))?;
+    let gate = options.answer.gate.gate().map_err(|why| LiveError::Request(why.to_string()))?;
     let (mut plans, mut warnings) = (Vec::new(), Vec::new());
     let mut header: Option<Vec<String>> = None;
     for finger in &all {
@@ -91,7 +91,7 @@ pub fn live(
             return Err(LiveError::Request("a mouse has one finger; name one --source".to_owned()));
         }
         let config = mouse.config.as_deref().map(read_mouse).transpose()?.unwrap_or_default();
-        plan.mouse = Some(Mouse { config, events: mouse.events.clone(), uinput: mouse.uinput });
+        plan.mouse = Some((config, mouse.clone()));
     }
     let has_switch = plans.iter().any(|plan| plan.switch.is_some());
     if files.events.is_some() && !has_switch {

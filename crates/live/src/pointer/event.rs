@@ -1,16 +1,21 @@
 //! What a pointer says: moves, the button, scrolling, and what it did about its own state.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 
 /// A button of the mouse.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Button {
     /// The main one.
     Left,
 }
 
 /// Why a pointer let go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Reason {
     /// No valid sample came for too long.
     Watchdog,
@@ -83,29 +88,6 @@ pub enum Event {
     },
 }
 
-impl Button {
-    /// As the events have it.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-        }
-    }
-}
-
-impl Reason {
-    /// As the events have it.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Watchdog => "watchdog",
-            Self::Clock => "clock",
-            Self::Lost => "lost",
-            Self::End => "end",
-        }
-    }
-}
-
 impl Event {
     /// When it was decided, seconds of the stream's clock.
     #[must_use]
@@ -134,9 +116,18 @@ impl Event {
             Self::Lost { .. } => "lost",
         }
     }
+
+    /// A line of JSON: `{"t":1.25,"event":"move","dx":1,"dy":0}`. Nothing is allocated.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn write_json(&self, to: &mut impl Write) -> io::Result<()> {
+        serde_json::to_writer(&mut *to, self)?;
+        to.write_all(b"\n")
+    }
 }
 
-/// `{"t":1.25,"event":"move","dx":1,"dy":0}`: the time, the word, then what belongs to it.
+/// The time, the word, then what belongs to it.
 impl Serialize for Event {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -148,7 +139,7 @@ impl Serialize for Event {
                 map.serialize_entry("dy", dy)?;
             }
             Self::Button { button, down, .. } => {
-                map.serialize_entry("button", button.word())?;
+                map.serialize_entry("button", button)?;
                 map.serialize_entry("down", down)?;
             }
             Self::Scroll { lines, .. } => map.serialize_entry("lines", lines)?,
@@ -157,8 +148,56 @@ impl Serialize for Event {
                 map.serialize_entry("Fy_N", fy_n)?;
             }
             Self::Ready { .. } => {}
-            Self::Lost { reason, .. } => map.serialize_entry("reason", reason.word())?,
+            Self::Lost { reason, .. } => map.serialize_entry("reason", reason)?,
         }
         map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVENTS: [(Event, &str); 8] = [
+        (Event::Move { t_s: 1.25, dx: 1, dy: 0 }, r#"{"t":1.25,"event":"move","dx":1,"dy":0}"#),
+        (
+            Event::Button { t_s: 2.0, button: Button::Left, down: true },
+            r#"{"t":2.0,"event":"button","button":"left","down":true}"#,
+        ),
+        (Event::Scroll { t_s: 0.1, lines: -3 }, r#"{"t":0.1,"event":"scroll","lines":-3}"#),
+        (Event::Zero { t_s: 3.5, fx_n: 0.02, fy_n: -0.01 }, r#"{"t":3.5,"event":"zero","Fx_N":0.02,"Fy_N":-0.01}"#),
+        (Event::Drag { t_s: 3.5, fx_n: 0.5, fy_n: 0.25 }, r#"{"t":3.5,"event":"drag","Fx_N":0.5,"Fy_N":0.25}"#),
+        (Event::Ready { t_s: 0.0 }, r#"{"t":0.0,"event":"ready"}"#),
+        (Event::Lost { t_s: 9.0, reason: Reason::Watchdog }, r#"{"t":9.0,"event":"lost","reason":"watchdog"}"#),
+        (
+            Event::Move { t_s: -1.234_567_890_123_456_7e-300, dx: i32::MIN, dy: i32::MAX },
+            r#"{"t":-1.2345678901234568e-300,"event":"move","dx":-2147483648,"dy":2147483647}"#,
+        ),
+    ];
+
+    #[test]
+    fn every_event_is_a_line() {
+        let mut bytes = Vec::new();
+        EVENTS.iter().for_each(|(event, _)| event.write_json(&mut bytes).unwrap());
+        let text = String::from_utf8(bytes).unwrap();
+        let expected: Vec<&str> = EVENTS.iter().map(|(_, line)| *line).collect();
+        assert_eq!(text.lines().collect::<Vec<_>>(), expected);
+        assert!(text.ends_with('\n'));
+    }
+
+    #[test]
+    fn nothing_is_allocated_for_a_line() {
+        let counted = allocation_counter::measure(|| {
+            for _ in 0..100 {
+                EVENTS.iter().for_each(|(event, _)| event.write_json(&mut io::sink()).unwrap());
+            }
+        });
+        assert_eq!(counted.count_total, 0);
+    }
+
+    #[test]
+    fn a_writer_that_fails_says_so() {
+        let mut full: [u8; 10] = [0; 10];
+        assert_eq!(EVENTS[0].0.write_json(&mut &mut full[..]).unwrap_err().kind(), io::ErrorKind::WriteZero);
     }
 }

@@ -1,7 +1,7 @@
 //! The wearable mouse (thesis 6.2): shear moves, pressing harder or a tap clicks, bending scrolls.
 //!
 //! In: a [`Config`] (`mouse.toml`) and the predicted forces and posture of one sample after another. Out: [`Event`]s in
-//! whole counts, for a file ([`JsonLines`]) or a mouse of the kernel's (`Uinput`). What a simulated person achieves
+//! whole counts, for a file ([`Event::write_json`]) or a mouse of the kernel's (`Uinput`). What a simulated person achieves
 //! with it is measured by tests (docs/src/jobs/mouse.md). The thesis built no mouse and names no figure; the design is
 //! ours.
 //!
@@ -28,6 +28,6 @@ mod user;
 pub use config::{Click, Config, ConfigFault, ConfigFaults, Mode};
 pub use decide::Pointer;
 pub use event::{Button, Event, Reason};
-pub use sink::{JsonLines, UinputState, uinput_state};
 #[cfg(target_os = "linux")]
 pub use sink::{Uinput, UinputFault};
+pub use sink::{UinputState, uinput_state};

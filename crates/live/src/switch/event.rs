@@ -32,19 +32,6 @@ pub enum Reason {
     End,
 }
 
-impl Reason {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Value => "value",
-            Self::Outside => "outside",
-            Self::Watchdog => "watchdog",
-            Self::Clock => "clock",
-            Self::Lost => "lost",
-            Self::End => "end",
-        }
-    }
-}
-
 /// A turn of a switch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SwitchEvent {
@@ -74,11 +61,10 @@ impl SwitchEvent {
         finger: Option<&str>,
         switch: Option<&str>,
     ) -> io::Result<()> {
-        let turn = match self.turn {
-            Turn::Press => "press",
-            Turn::Release => "release",
-        };
-        write!(to, "{{\"t\":{},\"event\":\"{turn}\",\"reason\":\"{}\"", self.t_s, self.reason.word())?;
+        write!(to, "{{\"t\":{},\"event\":", self.t_s)?;
+        serde_json::to_writer(&mut *to, &self.turn)?;
+        write!(to, ",\"reason\":")?;
+        serde_json::to_writer(&mut *to, &self.reason)?;
         for (key, text) in [("finger", finger), ("switch", switch)] {
             if let Some(text) = text {
                 write!(to, ",\"{key}\":")?;

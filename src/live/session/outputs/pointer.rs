@@ -1,15 +1,14 @@
 //! The pointer of a session: predicted forces and posture to moves and clicks, for a file and a mouse of the kernel's.
 
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use lunula_live::pointer::{Config, Event, JsonLines, Pointer, Reason, Uinput};
+use lunula_live::pointer::{Config, Event, Pointer, Reason, Uinput};
 use lunula_predictor::{Contact, FORCES};
 use serde::Serialize;
 
 use super::events::EventsFile;
 use crate::live::error::LiveError;
+use crate::live::options::MouseFiles;
 use crate::predictor::POSTURE;
 
 /// A pointer and where its events go.
@@ -18,16 +17,9 @@ pub(crate) struct PointerOutput {
     /// Where the forces are in an answer, and the angle.
     forces: [usize; 3],
     bend: Option<usize>,
-    events: Option<EventsFile<JsonLines<BufWriter<File>>>>,
+    events: Option<EventsFile>,
     uinput: Option<Uinput>,
     counts: PointerCounts,
-}
-
-/// What is asked of a pointer.
-pub(crate) struct Mouse {
-    pub(crate) config: Config,
-    pub(crate) events: Option<PathBuf>,
-    pub(crate) uinput: bool,
 }
 
 /// What a pointer did in a session.
@@ -62,8 +54,7 @@ impl PointerOutput {
     ///
     /// # Errors
     /// Forces that the models do not predict, a file that can't be made, no uinput.
-    pub(crate) fn new(mouse: Mouse, predicted: &[String]) -> Result<Self, LiveError> {
-        let Mouse { config, events, uinput } = mouse;
+    pub(crate) fn new(config: Config, files: &MouseFiles, predicted: &[String]) -> Result<Self, LiveError> {
         let place = |name: &str| {
             predicted.iter().position(|one| one == name).ok_or_else(|| {
                 LiveError::Request(format!(
@@ -78,8 +69,8 @@ impl PointerOutput {
             let what = format!("scroll = true needs {POSTURE}; name a model of posture too, or leave it out");
             return Err(LiveError::Request(what));
         }
-        let events = EventsFile::create(events.as_deref())?.map(|file| file.through(JsonLines::new));
-        let uinput = uinput.then(Uinput::open).transpose().map_err(|why| LiveError::Request(why.to_string()))?;
+        let events = EventsFile::create(files.events.as_deref())?;
+        let uinput = files.uinput.then(Uinput::open).transpose().map_err(|why| LiveError::Request(why.to_string()))?;
         Ok(Self { pointer: Pointer::new(config), forces, bend, events, uinput, counts: PointerCounts::default() })
     }
 
@@ -132,7 +123,7 @@ impl PointerOutput {
         let mut hears = |event: Event| {
             counts.count(&event);
             if let Some(events) = events {
-                let written = events.with(|to| to.write(&event).and_then(|()| to.flush()));
+                let written = events.write(|line| event.write_json(line));
                 fault = written.err().or(fault.take());
             }
             if let Some(mouse) = uinput

@@ -156,6 +156,6 @@ impl SwitchOutput {
         let config = self.switch.config();
         let name = self.name.as_deref().or(config.name.as_deref());
         let key = if config.column.is_some() { "value" } else { "force_N" };
-        events.write(|mut to| event.write_json(&mut to, key, self.finger.as_deref(), name))
+        events.write(|line| event.write_json(line, key, self.finger.as_deref(), name))
     }
 }
