@@ -21,7 +21,7 @@ pub use lunula_live::switch::Evaluation;
 pub use error::LiveError;
 pub(crate) use onlooker::{Attended, Onlooker};
 pub use options::{AnswerOptions, LiveOptions, MouseFiles, MouseOptions, SessionFiles, StreamOptions};
-pub(crate) use session::{FORCES, Growing, PhantomRows, StreamColumns, attend};
+pub(crate) use session::{Growing, PhantomRows, StreamColumns, attend};
 pub use session::{
     Latency, PointerCounts, Readers, SessionFigures, SessionReport, SourceFigures, SourceRole, SwitchCounts, live,
     record,

@@ -2,11 +2,12 @@
 
 use lunula_live::source::Condition;
 use lunula_live::wire::Row;
+use lunula_predictor::FORCES;
 
 use super::desk::{Desk, Pace, Shared, short};
 use super::protocol::{Prompted, StepKind};
 use super::run::{Key, Phase, Turn};
-use crate::live::{FORCES, LiveError, Onlooker, StreamColumns};
+use crate::live::{LiveError, Onlooker, StreamColumns};
 use crate::table::push_number;
 
 /// Further columns of the recording.

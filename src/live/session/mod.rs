@@ -25,7 +25,6 @@ pub(crate) use columns::StreamColumns;
 pub(crate) use open::PhantomRows;
 pub use outputs::pointer::PointerCounts;
 pub(crate) use outputs::recording::Recording as Growing;
-pub(crate) use outputs::samples::FORCES;
 pub use outputs::switch::SwitchCounts;
 pub(crate) use replay::each_row;
 pub use report::{Latency, SessionFigures, SessionReport, SourceFigures, SourceRole};

@@ -94,9 +94,7 @@ impl TableRows {
         }
         Ok(rows)
     }
-}
 
-impl TableRows {
     /// A recording of the Lab Streaming Layer.
     fn of_xdf(path: &Path, log: &LogReading) -> Result<Self, LiveError> {
         let (names, numbers) = recorded_stream(path, &log.columns)?;

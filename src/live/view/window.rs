@@ -42,17 +42,11 @@ struct Picture<'a> {
     /// Pixels of a whole trace.
     pixels: usize,
     /// Forces that fingers have, and friction.
-    cone: Cone,
+    cone: ForceSpace,
     fingers: Vec<FingerPicture<'a>>,
     health: &'a Health,
     /// Whether the session is over.
     ended: bool,
-}
-
-#[derive(Serialize)]
-struct Cone {
-    fz_max_n: f64,
-    mu: f64,
 }
 
 #[derive(Serialize)]
@@ -121,19 +115,12 @@ impl Window {
         let picture = Picture {
             bin_s: BIN_S,
             pixels: PIXELS,
-            cone: Cone::default(),
+            cone: ForceSpace::default(),
             fingers,
             health: &self.health,
             ended: self.ended,
         };
         serde_json::to_string(&picture).unwrap_or_default()
-    }
-}
-
-impl Default for Cone {
-    fn default() -> Self {
-        let space = ForceSpace::default();
-        Self { fz_max_n: space.fz_max_n(), mu: space.mu() }
     }
 }
 

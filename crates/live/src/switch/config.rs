@@ -13,7 +13,7 @@ pub enum Outside {
 }
 
 /// A switch's thresholds and times; what a file leaves out is 0 or off.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SwitchConfig {
     /// Pressed from this value on: newtons of pressing (-`Fz_N`), or of `column`.
@@ -87,21 +87,7 @@ impl SwitchConfig {
     /// Pressed from `on_n` on, released below `off_n`; all else off.
     #[must_use]
     pub fn of(on_n: f64, off_n: f64) -> Self {
-        Self {
-            on_n,
-            off_n,
-            hold_on_s: 0.0,
-            hold_off_s: 0.0,
-            lockout_s: 0.0,
-            rearm: false,
-            watchdog_s: 0.0,
-            outside: None,
-            column: None,
-            model_sha256: None,
-            name: None,
-            finger: None,
-            places: Vec::new(),
-        }
+        Self { on_n, off_n, ..Self::default() }
     }
 
     /// Reads a file's text.

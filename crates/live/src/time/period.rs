@@ -4,17 +4,11 @@
 const STEPS: usize = 32;
 
 /// The median step between rows, of the latest 32 or more; nothing is allocated.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Period {
     steps_s: [f64; STEPS],
     filled: usize,
     median_s: Option<f64>,
-}
-
-impl Default for Period {
-    fn default() -> Self {
-        Self { steps_s: [0.0; STEPS], filled: 0, median_s: None }
-    }
 }
 
 impl Period {

@@ -8,6 +8,7 @@ use std::{array, mem};
 
 use lunula_live::companion::{Companion, Known};
 use lunula_live::wire::Row;
+use lunula_predictor::FORCES;
 
 use super::recording::Recording;
 use crate::live::error::LiveError;
@@ -19,9 +20,6 @@ use crate::table::push_number;
 /// and so long for a device that has not named its columns yet.
 const PATIENCE_S: f64 = 1.0;
 const NAMES_S: f64 = 10.0;
-
-/// The three forces.
-pub(crate) const FORCES: [&str; 3] = ["Fx_N", "Fy_N", "Fz_N"];
 
 /// The samples of a finger.
 pub(crate) struct Samples {
