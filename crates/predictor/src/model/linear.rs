@@ -1,6 +1,7 @@
 //! Equation 9: y = y_m + J (P - m).
 
 use ndarray::Array2;
+use serde::Serialize;
 
 use super::ModelFault;
 use super::block::{
@@ -10,11 +11,13 @@ use crate::algebra::simd::Simd;
 
 /// The linear model. It stays centred: m and y_m are the means of the training rows, and equation 9's offset F_0 = y_m
 /// - J m is only worked out where it is printed, as it cancels digits where voltages have an offset.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Linear {
     centre: Vec<f64>,
     offset: Vec<f64>,
+    #[serde(serialize_with = "crate::model::rows")]
     jacobian: Array2<f64>,
+    #[serde(skip)]
     turned: Vec<[f64; GROUP]>,
 }
 

@@ -15,6 +15,7 @@ mod tansig;
 mod tests;
 
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 pub use eigennails::{Basis, Covariance, Eigennails, Process, Projection, Regression, Ridge};
@@ -24,8 +25,10 @@ pub use network::Network;
 pub use quadratic::{Quadratic, quadratic_terms};
 pub(crate) use tansig::tansig;
 
-/// A model, fitted.
-#[derive(Debug, Clone, PartialEq)]
+/// A model, fitted. What is written of it is what a model file has: equations 9, 16, 17 and 18 with the centres that
+/// they are kept with.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Model {
     /// Equation 9.
     Linear(Linear),
@@ -155,6 +158,11 @@ macro_rules! predicting {
     };
 }
 use predicting;
+
+/// Writes a matrix row by row.
+fn rows<S: Serializer>(matrix: &Array2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(matrix.outer_iter().map(|row| row.to_vec()))
+}
 
 /// Why numbers are no model.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

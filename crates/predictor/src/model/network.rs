@@ -4,6 +4,7 @@
 //! W_P / s, biases b_H - W_P m / s, and so on.
 
 use ndarray::Array2;
+use serde::Serialize;
 
 use super::ModelFault;
 use super::block::{Kernel, LANES, Lanes, MOST, Volts, scale};
@@ -16,22 +17,27 @@ const GROUP: usize = MOST;
 const NODES: usize = 8;
 
 /// The network: a layer of N tansig nodes, linear outputs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Network {
     centre: Vec<f64>,
     scale: Vec<f64>,
+    #[serde(serialize_with = "crate::model::rows")]
     hidden_weights: Array2<f64>,
     hidden_biases: Vec<f64>,
+    #[serde(serialize_with = "crate::model::rows")]
     output_weights: Array2<f64>,
     output_biases: Vec<f64>,
     target_centre: Vec<f64>,
     target_scale: Vec<f64>,
     /// 1 / s.
+    #[serde(skip)]
     inverse: Vec<f64>,
     /// The hidden weights again, [`NODES`] nodes side by side: node / NODES, then input, then node % NODES; missing
     /// nodes are zero.
+    #[serde(skip)]
     turned: Vec<[f64; NODES]>,
     /// The hidden biases likewise.
+    #[serde(skip)]
     biases: Vec<[f64; NODES]>,
 }
 

@@ -3,6 +3,7 @@
 //! Worked out as y_m + sum_i u_i (J_i + sum_{j >= i} J_ij u_j), which is the same sum with half the multiplications.
 
 use ndarray::Array2;
+use serde::Serialize;
 
 use super::ModelFault;
 use super::block::{
@@ -18,14 +19,17 @@ pub fn quadratic_terms(inputs: usize) -> Vec<(usize, usize)> {
 
 /// The quadratic model: inputs first, then their products in [`quadratic_terms`]' order, of centred and scaled
 /// voltages.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Quadratic {
     centre: Vec<f64>,
     scale: Vec<f64>,
     offset: Vec<f64>,
+    #[serde(serialize_with = "crate::model::rows")]
     jacobian: Array2<f64>,
     /// 1 / s.
+    #[serde(skip)]
     inverse: Vec<f64>,
+    #[serde(skip)]
     turned: Vec<[f64; GROUP]>,
 }
 

@@ -57,21 +57,21 @@ pub struct Opened {
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct File<M> {
     format: String,
     version: u64,
     made_by: String,
     inputs: Vec<Channel>,
     targets: Vec<Channel>,
     lags: Option<Lags>,
-    model: Numbers,
+    model: M,
     intervals: Option<Intervals>,
     training: Training,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sha256: Option<String>,
 }
 
-/// A model's numbers: equations 9, 16, 17 and 18 with the centres that they are kept with.
+/// A model's numbers, read: what the parts of a [`Model`] are written as.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 enum Numbers {
@@ -125,7 +125,7 @@ impl Predictor {
             inputs: self.inputs.clone(),
             targets: self.targets.clone(),
             lags: self.lags.clone(),
-            model: Numbers::of(&self.model),
+            model: &self.model,
             intervals: self.intervals.clone(),
             training: self.training.clone(),
             sha256: None,
@@ -153,7 +153,7 @@ impl Predictor {
             return Err(FileFault::Version { found });
         }
         // From the text, not from the value: the place of a fault stays known.
-        let mut file: File = serde_json::from_str(text)?;
+        let mut file: File<Numbers> = serde_json::from_str(text)?;
         let stated = file.sha256.take();
         let sha256 = checksum(&file);
         let edited = stated.is_none_or(|stated| stated != sha256);
@@ -167,13 +167,13 @@ impl Predictor {
 }
 
 /// Of all but itself, in the order and spelling that is written.
-fn checksum(file: &File) -> String {
+fn checksum<M: Serialize>(file: &File<M>) -> String {
     let text = serde_json::to_string(file).expect("plain data with names as keys");
     hex(Sha256::new_with_prefix(text))
 }
 
 /// Whether the parts of a file belong together.
-fn check(model: &Model, file: &File) -> Result<(), FileFault> {
+fn check(model: &Model, file: &File<Numbers>) -> Result<(), FileFault> {
     let File { inputs, targets, training, intervals, lags, .. } = file;
     let other = |what: String| Err(FileFault::Other(what));
     let lags_s = lags.as_ref().map_or(&[][..], Lags::lags_s);
@@ -228,40 +228,6 @@ fn check(model: &Model, file: &File) -> Result<(), FileFault> {
 }
 
 impl Numbers {
-    fn of(model: &Model) -> Self {
-        match model {
-            Model::Linear(model) => Self::Linear {
-                centre: model.centre().to_vec(),
-                offset: model.offset().to_vec(),
-                jacobian: rows(model.jacobian()),
-            },
-            Model::Quadratic(model) => Self::Quadratic {
-                centre: model.centre().to_vec(),
-                scale: model.scale().to_vec(),
-                offset: model.offset().to_vec(),
-                jacobian: rows(model.jacobian()),
-            },
-            Model::Network(model) => Self::Network {
-                centre: model.centre().to_vec(),
-                scale: model.scale().to_vec(),
-                hidden_weights: rows(model.hidden_weights()),
-                hidden_biases: model.hidden_biases().to_vec(),
-                output_weights: rows(model.output_weights()),
-                output_biases: model.output_biases().to_vec(),
-                target_centre: model.target_centre().to_vec(),
-                target_scale: model.target_scale().to_vec(),
-            },
-            Model::Eigennails(model) => Self::Eigennails {
-                mean: model.basis().mean().to_vec(),
-                modes: rows(model.basis().modes()),
-                spread: model.basis().spread().to_vec(),
-                noise: model.basis().noise(),
-                ranges: model.ranges().to_vec(),
-                on_scores: Scored::of(model.regression()),
-            },
-        }
-    }
-
     fn model(self) -> Result<Model, ModelFault> {
         Ok(match self {
             Self::Linear { centre, offset, jacobian } => {
@@ -306,23 +272,6 @@ impl Numbers {
 }
 
 impl Scored {
-    fn of(regression: &Regression) -> Self {
-        match regression {
-            Regression::Ridge(ridge) => Self::Ridge {
-                coefficients: rows(ridge.coefficients()),
-                offset: ridge.offset().to_vec(),
-                lambda: ridge.lambda().to_vec(),
-                residual_sd: ridge.residual_sd().to_vec(),
-                rows: ridge.rows(),
-            },
-            Regression::Process(process) => Self::Process {
-                rows: rows(process.rows()),
-                targets: rows(process.targets()),
-                covariances: process.covariances().to_vec(),
-            },
-        }
-    }
-
     fn regression(self, spread: &[f64]) -> Result<Regression, ModelFault> {
         Ok(match self {
             Self::Ridge { coefficients, offset, lambda, residual_sd, rows } => {
@@ -338,10 +287,6 @@ impl Scored {
             }
         })
     }
-}
-
-fn rows(matrix: &Array2<f64>) -> Vec<Vec<f64>> {
-    matrix.outer_iter().map(|row| row.to_vec()).collect()
 }
 
 fn matrix(what: &'static str, rows: &[Vec<f64>], columns: usize) -> Result<Array2<f64>, ModelFault> {

@@ -9,6 +9,7 @@
 //! whole spread. How well the scores are known then is handed out as a covariance.
 
 use ndarray::{Array2, ArrayView2, Axis, Slice};
+use serde::Serialize;
 
 use super::super::{ModelFault, finite, finite_matrix, inverses, sizes};
 use crate::algebra::cholesky::Cholesky;
@@ -22,9 +23,10 @@ const LEAST_KNOWN: f64 = 0.5;
 const LEAST_NOISE: f64 = 1e-12;
 
 /// Modes of the cells.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Basis {
     mean: Vec<f64>,
+    #[serde(serialize_with = "crate::model::rows")]
     modes: Array2<f64>,
     spread: Vec<f64>,
     noise: f64,
@@ -102,12 +104,6 @@ impl Basis {
     #[must_use]
     pub fn spread(&self) -> &[f64] {
         &self.spread
-    }
-
-    /// Variance of a cell that no mode explains.
-    #[must_use]
-    pub fn noise(&self) -> f64 {
-        self.noise
     }
 
     /// The first `count` modes; what the others explained is noise then.

@@ -10,6 +10,7 @@ mod process;
 mod ridge;
 
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use serde::Serialize;
 
 use super::{ModelFault, finite, sizes};
 pub use basis::{Basis, Projection};
@@ -22,7 +23,8 @@ pub use ridge::Ridge;
 const BEYOND: f64 = 0.1;
 
 /// From scores to targets.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Regression {
     /// Linear, shrunk.
     Ridge(Ridge),
@@ -31,12 +33,14 @@ pub enum Regression {
 }
 
 /// Modes of the nail and a regression on their scores.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Eigennails {
+    #[serde(flatten)]
     basis: Basis,
-    regression: Regression,
     /// Lowest and highest score of the training rows, a mode each.
     ranges: Vec<[f64; 2]>,
+    #[serde(rename = "on_scores")]
+    regression: Regression,
 }
 
 impl Eigennails {
@@ -64,12 +68,6 @@ impl Eigennails {
     #[must_use]
     pub fn regression(&self) -> &Regression {
         &self.regression
-    }
-
-    /// The lowest and the highest score of the training rows, a mode each.
-    #[must_use]
-    pub fn ranges(&self) -> &[[f64; 2]] {
-        &self.ranges
     }
 
     /// How many cells it reads.

@@ -7,13 +7,14 @@
 //! amplitude: it says that it is lost.
 
 use ndarray::{Array2, Axis};
+use serde::{Deserialize, Serialize};
 
 use super::super::{ModelFault, finite, finite_matrix, sizes};
 use super::basis::Projection;
 use crate::algebra::cholesky::Cholesky;
 
 /// What a target's process is like.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Covariance {
     /// SD of the target about its mean, its unit; 0 of a target that does not change.
@@ -27,17 +28,23 @@ pub struct Covariance {
 }
 
 /// A Gaussian process on scores, a target each.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Process {
     /// Rows x modes, whitened.
+    #[serde(serialize_with = "crate::model::rows")]
     pub(super) rows: Array2<f64>,
     /// Rows x targets.
+    #[serde(serialize_with = "crate::model::rows")]
     targets: Array2<f64>,
     pub(super) covariances: Vec<Covariance>,
+    #[serde(skip)]
     spread: Vec<f64>,
+    #[serde(skip)]
     mean: Vec<f64>,
+    #[serde(skip)]
     factors: Vec<Cholesky>,
     /// Of each target (K + noise)^-1 (y - mean), over amplitude^2 both.
+    #[serde(skip)]
     weights: Vec<Vec<f64>>,
 }
 
@@ -84,18 +91,6 @@ impl Process {
     #[must_use]
     pub fn covariances(&self) -> &[Covariance] {
         &self.covariances
-    }
-
-    /// Rows that it keeps, rows x modes, whitened.
-    #[must_use]
-    pub fn rows(&self) -> &Array2<f64> {
-        &self.rows
-    }
-
-    /// Their targets, rows x targets.
-    #[must_use]
-    pub fn targets(&self) -> &Array2<f64> {
-        &self.targets
     }
 
     /// How alike the row is to each row kept, in the eyes of a target.

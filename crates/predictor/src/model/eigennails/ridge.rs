@@ -4,13 +4,15 @@
 //! training rows by their making.
 
 use ndarray::Array2;
+use serde::Serialize;
 
 use super::super::{ModelFault, finite, finite_matrix, sizes};
 use super::basis::Projection;
 
 /// Ridge on scores.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ridge {
+    #[serde(serialize_with = "crate::model::rows")]
     pub(super) coefficients: Array2<f64>,
     pub(super) offset: Vec<f64>,
     lambda: Vec<f64>,
@@ -18,6 +20,7 @@ pub struct Ridge {
     /// Trained on.
     rows: usize,
     /// Rows trained on less 1, times the variance of each score.
+    #[serde(skip)]
     squares: Vec<f64>,
 }
 
@@ -51,36 +54,6 @@ impl Ridge {
         let squares = spread.iter().map(|spread| (rows as f64 - 1.0) * spread * spread).collect();
         let coefficients = coefficients.as_standard_layout().into_owned();
         Ok(Self { coefficients, offset, lambda, residual_sd, rows, squares })
-    }
-
-    /// Targets x modes, a target's unit for each unit of the cells.
-    #[must_use]
-    pub fn coefficients(&self) -> &Array2<f64> {
-        &self.coefficients
-    }
-
-    /// The targets where all scores are 0.
-    #[must_use]
-    pub fn offset(&self) -> &[f64] {
-        &self.offset
-    }
-
-    /// A target each, the cells' unit squared.
-    #[must_use]
-    pub fn lambda(&self) -> &[f64] {
-        &self.lambda
-    }
-
-    /// Of rows not trained on, a target each in its unit.
-    #[must_use]
-    pub fn residual_sd(&self) -> &[f64] {
-        &self.residual_sd
-    }
-
-    /// How many it was trained on.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.rows
     }
 
     /// Targets at scores.
