@@ -11,7 +11,7 @@ use crate::log::LogReading;
 use crate::predictor::GateChoices;
 
 /// Where samples come from, and how they are read.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct StreamOptions {
     /// Where samples come from: serial:/dev/ttyACM0?baud=921600, serial:auto, tcp:HOST:PORT, tcp-listen:ADDRESS:PORT,
     /// udp:PORT, lsl:name=NAME, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1; of several fingers

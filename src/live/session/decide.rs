@@ -29,6 +29,7 @@ pub(super) const COUNTS: &str = "the photodiodes are whole numbers beyond 30: th
                                  models read volts; say what a step is, as --volts-per-count 10/65536";
 
 /// A finger, before the columns of its stream are known.
+#[derive(Default)]
 pub(super) struct Plan {
     /// Its name and its place, where there are several.
     pub(super) finger: Option<(String, usize)>,

@@ -27,12 +27,9 @@ impl Finger<'_> {
     pub(super) fn plan(&self, keep_faults: bool) -> Plan {
         Plan {
             finger: self.name.clone().map(|name| (name, self.place)),
-            recording: None,
-            answering: None,
             keep_faults,
-            switch: None,
-            mouse: None,
             joins_forces: self.force.is_some(),
+            ..Plan::default()
         }
     }
 

@@ -34,12 +34,9 @@ pub(crate) fn each_row(
     };
     let options = StreamOptions {
         source: vec![OfFinger::any(source.clone())],
-        force: Vec::new(),
-        volts_per_count: None,
-        names: None,
         keep: extra.to_vec(),
-        seconds: None,
         log: log.clone(),
+        ..StreamOptions::default()
     };
     let clock = HostClock::start();
     let mut feed = Feed::open(&source, &options, &[], &clock)?;

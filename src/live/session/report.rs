@@ -27,7 +27,7 @@ pub(super) const REPORT: &str = ".stream.json";
 pub type SessionReport = Report<SessionFigures>;
 
 /// The figures of a session.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct SessionFigures {
     /// The recording; of several fingers the name that theirs are made of.
     pub out: Option<PathBuf>,
@@ -84,7 +84,7 @@ pub enum SourceRole {
 }
 
 /// How long a row took on its way; none where it can't be known.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Latency {
     /// Later than the fastest rows came, by the device's clock: what the link adds at times.
     pub arrival: Option<LatencySummary>,
@@ -121,7 +121,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     let late = lanes[0].feed.stream.lateness().and_then(Times::summary);
     let latency =
         Latency { arrival: shared.arrival.summary(), work: shared.work.summary(), wake_up: late.or(wake_up.summary()) };
-    let mut figures = SessionFigures::new(files.out.clone(), latency);
+    let mut figures = SessionFigures { out: files.out.clone(), latency, ..SessionFigures::default() };
     let (mut failed, mut silent, mut doubts, mut is_gated) = (Vec::new(), Vec::new(), Vec::new(), false);
     for lane in lanes {
         let finger = lane.finger();
@@ -191,26 +191,6 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
 }
 
 impl SessionFigures {
-    fn new(out: Option<PathBuf>, latency: Latency) -> Self {
-        Self {
-            out,
-            sources: Vec::new(),
-            columns: Vec::new(),
-            rows: 0,
-            answered: 0,
-            rows_not_known: 0,
-            rows_outside: 0,
-            touch: 0,
-            bending: 0,
-            rows_without_force: None,
-            switch: None,
-            pointer: None,
-            latency,
-            lost_by_readers: 0,
-            lost_by_disk: 0,
-        }
-    }
-
     /// Adds what was made of a finger's rows, and ends its recording. Returns what to doubt of it.
     fn add(
         &mut self,

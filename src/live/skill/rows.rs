@@ -42,7 +42,7 @@ pub(super) struct Finger {
 }
 
 /// A recording.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Rows {
     /// NaN where a row has no time.
     pub(super) time_s: Vec<f64>,
@@ -96,16 +96,7 @@ fn of_log(path: &Path, finger: &str) -> Result<Rows, LiveError> {
         return Err(LiveError::recording(path, what));
     };
     let one = Finger { name: finger.to_owned(), fz_n: force.values, gate: Vec::new(), angles: Vec::new(), own: None };
-    Ok(Rows {
-        time_s: log.time_s,
-        fingers: vec![one],
-        trial: None,
-        subject: None,
-        table: None,
-        angles_without_gate: false,
-        notes: log.notes,
-        warnings: Vec::new(),
-    })
+    Ok(Rows { time_s: log.time_s, fingers: vec![one], notes: log.notes, ..Rows::default() })
 }
 
 fn of_table(path: &Path, plain: &str) -> Result<Rows, LiveError> {

@@ -80,8 +80,7 @@ pub fn evaluate_switch(
     note(&mut report, &all, inputs, options, led);
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
     report.warnings.extend(elsewhere(&read, &traces, &found));
-    let at = staging.place("presses.csv")?;
-    write_presses(&at, &out.join("presses.csv"), &read, &found)?;
+    write_presses(&staging, &read, &found)?;
     if *figures {
         let draw = |png: &Path, svg: &Path| draw_delays(&found, png, svg);
         report.pictures.push(stages.time("figures", || staging.draw("delays", draw))?);
@@ -95,7 +94,8 @@ pub fn evaluate_switch(
 }
 
 /// A row for each press that is judged and each missed contact.
-fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Match>]) -> Result<(), LiveError> {
+fn write_presses(staging: &Staging, recordings: &[String], found: &[Vec<Match>]) -> Result<(), LiveError> {
+    let name = "presses.csv";
     let columns = vec![
         Column::text("recording"),
         Column::text("kind"),
@@ -104,7 +104,7 @@ fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Ma
         Column::number("contact_start_s"),
         Column::number("contact_end_s"),
     ];
-    let mut table = TableWriter::create(at, shown, columns, &[])?;
+    let mut table = TableWriter::create(&staging.place(name)?, &staging.target().join(name), columns, &[])?;
     for (recording, matches) in recordings.iter().zip(found) {
         for one in matches {
             let kind = match one.fate {

@@ -55,11 +55,7 @@ pub fn prune(
         validate: compared.files,
         inputs: inputs.clone(),
         targets: targets.clone(),
-        subsets: 0,
-        none: None,
-        best_of_size: Vec::new(),
-        without_one: Vec::new(),
-        all: Vec::new(),
+        ..PruneFigures::default()
     };
     let ambient = DataFile::ambient_step(data.iter().chain(validate), &wanted.rows);
     let mut left_out = left_out(prune_plan([data.len(), validate.len()], ambient, out));

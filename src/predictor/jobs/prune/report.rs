@@ -26,7 +26,7 @@ pub struct PruneRow {
 pub type PruneReport = Report<PruneFigures>;
 
 /// The figures of a run.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct PruneFigures {
     /// The recordings trained on.
     pub data: Vec<FileRows>,
