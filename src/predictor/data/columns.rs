@@ -11,9 +11,7 @@ fn number(name: &str) -> Option<u32> {
 
 /// All photodiodes, in the order of their numbers.
 pub(super) fn photodiodes(names: &[String]) -> Vec<String> {
-    let mut found: Vec<(u32, &String)> = names.iter().filter_map(|name| Some((number(name)?, name))).collect();
-    found.sort();
-    found.into_iter().map(|(_, name)| name.clone()).collect()
+    in_order(names, number)
 }
 
 /// Row and column of a cell of a nail's picture, from 0: `C_03_11`.
@@ -28,7 +26,12 @@ pub(crate) fn cell(name: &str) -> Option<[usize; 2]> {
 
 /// All cells, row by row.
 pub(super) fn cells(names: &[String]) -> Vec<String> {
-    let mut found: Vec<([usize; 2], &String)> = names.iter().filter_map(|name| Some((cell(name)?, name))).collect();
+    in_order(names, cell)
+}
+
+/// The names that have a place, in the order of places.
+fn in_order<T: Ord>(names: &[String], place: fn(&str) -> Option<T>) -> Vec<String> {
+    let mut found: Vec<(T, &String)> = names.iter().filter_map(|name| Some((place(name)?, name))).collect();
     found.sort();
     found.into_iter().map(|(_, name)| name.clone()).collect()
 }

@@ -26,10 +26,6 @@ pub enum Spoil {
 }
 
 impl Spoil {
-    /// Every kind.
-    pub const ALL: [Self; 7] =
-        [Self::BeforeNames, Self::Cells, Self::Unreadable, Self::Checksum, Self::Unchecked, Self::TooLong, Self::Frame];
-
     /// What is wrong, in words that follow "line 7".
     #[must_use]
     pub fn words(self) -> &'static str {

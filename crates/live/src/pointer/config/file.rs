@@ -1,6 +1,7 @@
 //! The text of `mouse.toml` to a [`Config`], and what is wrong with it, by line.
 
 use std::fmt;
+use std::str::FromStr;
 
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
@@ -112,21 +113,17 @@ fn set(config: &mut Config, key: &str, value: &DeValue<'_>) -> Result<(), String
     let value = match value {
         DeValue::String(text) => toml::Value::String(text.clone().into_owned()),
         DeValue::Boolean(is) => toml::Value::Boolean(*is),
-        DeValue::Integer(integer) => integer
-            .as_str()
-            .parse()
-            .map(toml::Value::Integer)
-            .map_err(|_| wrong(format!("{} is not a number that can be used here", integer.as_str())))?,
-        DeValue::Float(float) => float
-            .as_str()
-            .parse()
-            .map(toml::Value::Float)
-            .map_err(|_| wrong(format!("{} is not a number that can be used here", float.as_str())))?,
+        DeValue::Integer(integer) => number(integer.as_str(), toml::Value::Integer).map_err(wrong)?,
+        DeValue::Float(float) => number(float.as_str(), toml::Value::Float).map_err(wrong)?,
         other => return Err(wrong(format!("{} where a number or a word is expected", other.type_str()))),
     };
     table.insert(key.to_owned(), value);
     *config = Config::deserialize(table).map_err(|why| wrong(why.message().trim().to_owned()))?;
     Ok(())
+}
+
+fn number<T: FromStr>(text: &str, value: fn(T) -> toml::Value) -> Result<toml::Value, String> {
+    text.parse().map(value).map_err(|_| format!("{text} is not a number that can be used here"))
 }
 
 /// The line of a place (a number of bytes) of a text, from 1.

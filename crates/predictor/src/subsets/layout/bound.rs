@@ -38,9 +38,9 @@ pub fn prove(problem: &LayoutProblem, rules: &Rules, known: &Choice, budget: u64
     let k = known.places.len();
     let (ordered, order) = by_own_cost(problem, &units);
     let mut ladder = Ladder::new(&ordered);
-    units.kept.iter().for_each(|&place| ladder.push(order.place(place)));
+    units.kept.iter().for_each(|&place| ladder.push(order.new[place]));
     let sizes: Vec<Vec<usize>> =
-        order.units.iter().map(|&unit| units.units[unit].iter().map(|&place| order.place(place)).collect()).collect();
+        order.units.iter().map(|&unit| units.units[unit].iter().map(|&place| order.new[place]).collect()).collect();
     let mut tree = Tree {
         ladder,
         units: &units,
@@ -71,12 +71,6 @@ struct Order {
     units: Vec<usize>,
     /// Of the problem's places, the new number.
     new: Vec<usize>,
-}
-
-impl Order {
-    fn place(&self, old: usize) -> usize {
-        self.new[old]
-    }
 }
 
 /// The problem with kept places first, then those of units that cost least by themselves.
