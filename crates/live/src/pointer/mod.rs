@@ -1,9 +1,9 @@
 //! The wearable mouse (thesis 6.2): shear moves, pressing harder or a tap clicks, bending scrolls.
 //!
 //! In: a [`Config`] (`mouse.toml`) and the predicted forces and posture of one sample after another. Out: [`Event`]s in
-//! whole counts, for a file ([`Event::write_json`]) or a mouse of the kernel's (`Uinput`). What a simulated person achieves
-//! with it is measured by tests (docs/src/jobs/mouse.md). The thesis built no mouse and names no figure; the design is
-//! ours.
+//! whole counts, for a file ([`Event::write_json`]) or a mouse of the kernel's (`Uinput`). What a simulated person
+//! achieves with it is measured by tests (docs/src/jobs/mouse.md). The thesis built no mouse and names no figure; the
+//! design is ours.
 //!
 //! Physics: shear exists only within the cone |F_r| <= mu N. So nothing moves but while the finger presses: *pressing
 //! lightly* is to move and *pressing harder* to click, and the two interfere. Whoever presses to click also changes the
