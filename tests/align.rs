@@ -63,7 +63,7 @@ fn from_nothing_to_a_set_whose_certificate_agrees_with_the_truth() {
     let dir = scene(&["--hide", "middle_dist@40+14"], &[]);
     let report = posture(&dir).expect(0);
     assert!(report.stderr.is_empty(), "{}", report.stderr);
-    let header = std::fs::read_to_string(dir.path("joints.csv")).expect("text");
+    let header = dir.text("joints.csv");
     assert!(
         header.starts_with(
             "frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status,\
@@ -94,7 +94,7 @@ fn from_nothing_to_a_set_whose_certificate_agrees_with_the_truth() {
     assert_eq!(of("frames_read") + of("frames_abstained"), angles.len() as f64);
 
     let set = dir.table("training.csv");
-    let header = std::fs::read_to_string(dir.path("training.csv")).expect("text");
+    let header = dir.text("training.csv");
     assert_eq!(
         header.lines().next(),
         Some(
@@ -176,10 +176,10 @@ fn a_clock_that_is_looked_for_says_the_same() {
 #[test]
 fn without_a_clock_an_offset_is_needed() {
     let dir = scene(&[], &[]);
-    let markers = std::fs::read_to_string(dir.path("s/markers.toml")).unwrap();
+    let markers = dir.text("s/markers.toml");
     dir.write("s/markers.toml", markers.split("\n[clock]").next().unwrap());
     let report = posture(&dir).expect(0);
-    let header = std::fs::read_to_string(dir.path("joints.csv")).unwrap();
+    let header = dir.text("joints.csv");
     assert!(
         header.lines().next().unwrap().ends_with(",status"),
         "no clock's columns: {report:?}",
@@ -228,8 +228,7 @@ fn a_clock_that_is_hidden_half_of_the_time_ties_and_one_that_stops_or_jumps_does
     assert!((offset_s - OFFSET_S).abs() <= 1e-2, "{offset_s}");
     for (option, at, words) in [("--clock-stop", "60", "stand"), ("--clock-jump", "60+5", "jump")] {
         let dir = scene(&[option, at], &[]);
-        let answer = posture(&dir).expect(1);
-        assert!(answer.stderr.contains("clock"), "{}", answer.stderr);
+        let answer = posture(&dir).expect(1).says("clock");
         assert!(answer.stderr.contains(words), "{option}: {}", answer.stderr);
         // The angles are there all the same.
         assert!(dir.table("joints.csv").iter().all(|row| row["clock_s"].is_empty() && row["status"] == "ok"));
@@ -241,27 +240,16 @@ fn a_clock_that_is_hidden_half_of_the_time_ties_and_one_that_stops_or_jumps_does
 #[test]
 fn exports_for_other_tools() {
     let dir = scene(&[], &[]);
-    dir.lunula(&[
-        "posture",
-        "s/video.mp4",
-        "--markers",
-        "s/markers.toml",
-        "--out",
-        "joints.csv",
-        "--tracks",
-        "tracks.csv",
-        "-q",
-    ])
-    .expect(0);
+    dir.words("posture s/video.mp4 --markers s/markers.toml --out joints.csv --tracks tracks.csv -q").expect(0);
     let all =
         ["--mot", "a.mot", "--bids", "bids", "--dlc", "dlc.csv", "--tracks", "tracks.csv", "--subject", "S1", "-q"];
     align(&dir, &all).expect(0);
-    let mot = std::fs::read_to_string(dir.path("a.mot")).unwrap();
+    let mot = dir.text("a.mot");
     assert!(mot.contains("inDegrees=yes") && mot.contains("endheader"), "{mot:.200}");
     let motion = dir.path("bids/sub-S1/motion/sub-S1_task-bending_tracksys-lunula_motion.tsv");
     let frames = dir.table("joints.csv").len();
     assert_eq!(std::fs::read_to_string(motion).unwrap().lines().count(), frames);
-    assert_eq!(std::fs::read_to_string(dir.path("dlc.csv")).unwrap().lines().count(), frames + 3);
+    assert_eq!(dir.text("dlc.csv").lines().count(), frames + 3);
     align(&dir, &["--bids", "other"]).expect(2).says("subject");
     assert!(!dir.path("other").exists());
 }
@@ -275,18 +263,14 @@ fn the_plan_changes_nothing() {
         assert!(plan.contains(words), "`{words}` in:\n{plan}");
     }
     let stands = dir.bytes_of(".");
-    dir.lunula(&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--out", "t/training.csv", "--plan"])
-        .expect(0);
+    dir.words("align --joints joints.csv --log s/log.csv --out t/training.csv --plan").expect(0);
     assert_eq!(dir.bytes_of("."), stands);
 }
 
 #[test]
 fn the_trade_off_measures_the_clock_read_in_fewer_and_fewer_frames() {
     let dir = scene(&[], &[]);
-    let report = dir
-        .lunula(&["tradeoff", "align", "--input", "s", "--truth", "s/truth", "--out", "t", "--repeats", "1", "--json"])
-        .expect(0)
-        .json();
+    let report = dir.words("tradeoff align --input s --truth s/truth --out t --repeats 1 --json").expect(0).json();
     let rows = report["rows"].as_array().unwrap();
     let of = |setting: &str| rows.iter().find(|row| row["setting"] == setting).unwrap_or_else(|| panic!("{report}"));
     let [every, few] = ["clock in every frame", "clock in 1 of 20 frames"].map(of);

@@ -34,8 +34,7 @@ fn aligned(joints: &str, log: &str, more: &[&str]) -> (Dir, Answer) {
 #[track_caller]
 fn is_refused(joints: &str, log: &str, more: &[&str], words: &[&str]) {
     let (dir, answer) = aligned(joints, log, more);
-    let answer = words.iter().fold(answer.expect(2), |answer, words| answer.says(words));
-    assert!(answer.stdout.is_empty());
+    assert!(answer.refuses(words).stdout.is_empty());
     assert!(!dir.path("out").exists(), "nothing is left behind");
 }
 
@@ -156,7 +155,7 @@ fn results_never_replace_inputs() {
     }
     dir.lunula(&["align", "--joints", "joints.csv", "--log", "log.csv", "--out", "t.txt"]).expect(2).says(".parquet");
     dir.lunula(&["align", "--joints", "gone.csv", "--log", "log.csv", "--out", "t.csv"]).expect(2).says("gone.csv");
-    assert_eq!(std::fs::read_to_string(dir.path("joints.csv")).unwrap(), joints());
+    assert_eq!(dir.text("joints.csv"), joints());
 }
 
 #[test]

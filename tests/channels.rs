@@ -97,7 +97,7 @@ fn contrasts_of_phantoms_are_those_of_their_spectra() {
     let differences = report["channels"]["differences"].list();
     assert_eq!(differences.len(), 9);
     assert!(differences.iter().filter(|d| d["of"] == "green").all(|d| d["difference"]["low"].number() > 0.0));
-    let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
+    let html = dir.text("out/report.html");
     assert!(html.contains("Why the green channel?") && html.contains("In 3 of 3 pose(s) green has more contrast"));
     assert!(dir.path("out/figures/channels.png").exists() && dir.path("out/figures/channels.svg").exists());
 }
@@ -135,7 +135,7 @@ fn no_channel_is_favoured_where_all_have_the_same_contrast() {
         let [low, high] = ["low", "high"].map(|end| difference["difference"][end].number());
         assert!(low <= 0.0 && 0.0 <= high, "{difference}");
     }
-    let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
+    let html = dir.text("out/report.html");
     assert!(html.contains("In 1 of 1 pose(s) green is not clearly ahead"), "green is not said to lead");
 }
 
@@ -143,14 +143,9 @@ fn no_channel_is_favoured_where_all_have_the_same_contrast() {
 fn comparing_adds_its_files_and_changes_no_other_whatever_the_threads() {
     let dir = Dir::new();
     write(&small_set(4, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
-    let run = |out: &str, more: &[&str]| {
-        dir.lunula(&[&["photos", "set/photos", "--out", out], more].concat()).expect(0);
-        dir.results_of(out)
-    };
-    let plain = run("plain", &[]);
-    let one = run("one", &["--channels", "--threads", "1"]);
-    let four = run("four", &["--channels", "--threads", "4"]);
-    assert!(one == four);
+    dir.words("photos set/photos --out plain").expect(0);
+    let plain = dir.results_of("plain");
+    let one = dir.on_any_threads("photos set/photos --channels --out {out}");
     let added: Vec<&String> = one.keys().filter(|name| !plain.contains_key(*name)).collect();
     assert_eq!(added, ["channels.csv", "figures/channels.png", "figures/channels.svg"]);
     assert!(plain.iter().all(|(name, bytes)| one[name] == *bytes));
@@ -259,7 +254,7 @@ fn poses_are_listed_in_the_thesis_order() {
         (of_table("out/nails.csv"), of_table("out/channels.csv")),
         (expected.map(str::to_owned).to_vec(), expected.map(str::to_owned).to_vec())
     );
-    let sheet = std::fs::read_to_string(dir.path("out/figures/mean.svg")).expect("a sheet");
+    let sheet = dir.text("out/figures/mean.svg");
     in_order(&sheet);
 }
 

@@ -70,7 +70,7 @@ fn by_hand_it_hands_both_to_slurm_or_says_how_it_is_called() {
     let path = format!("{}:{}", dir.path("bin").display(), std::env::var("PATH").unwrap());
     let output = script(&dir, &["pipeline.toml", "out", "3"], &[("PATH", &path)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let calls = std::fs::read_to_string(dir.path("calls")).unwrap();
+    let calls = dir.text("calls");
     let calls: Vec<&str> = calls.lines().collect();
     assert_eq!(calls.len(), 2, "{calls:?}");
     assert!(calls[0].contains("--array=1-3") && calls[0].ends_with("pipeline.toml out 3"), "{calls:?}");
@@ -81,7 +81,7 @@ fn by_hand_it_hands_both_to_slurm_or_says_how_it_is_called() {
     let output =
         script(&dir, &["pipeline.toml", "out", "3"], &[("PATH", &path), ("LUNULA_CPUS", "2"), ("LUNULA_TIME", "10")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let calls = std::fs::read_to_string(dir.path("calls")).unwrap();
+    let calls = dir.text("calls");
     let last: Vec<&str> = calls.lines().skip(2).collect();
     assert!(last.iter().all(|call| call.contains("--cpus-per-task=2 ") && call.contains("--time=10 ")), "{last:?}");
     let asked = std::fs::read_to_string(repository().join(SCRIPT)).unwrap();

@@ -63,20 +63,8 @@ fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
     assert_eq!(figures, ["105", "106", "108", "109", "110", "111", "112", "113"]);
     for model in ["linear", "quadratic"] {
         for (validate, figure) in [("1-3", "109"), ("1-4", "110")] {
-            let joined = format!("{validate}/log.csv");
-            let train = [
-                "train",
-                "1-1/log.csv",
-                "1-2/log.csv",
-                "--target",
-                "force",
-                "--model",
-                model,
-                "--out",
-                "m.json",
-                "--json",
-            ];
-            let json = dir.lunula(&[&train[..], &["--validate", &joined]].concat()).expect(0).json();
+            let train = format!("train 1-1/log.csv 1-2/log.csv --target force --model {model} --out m.json --json");
+            let json = dir.words(&format!("{train} --validate {validate}/log.csv")).expect(0).json();
             for force in ["Fx_N", "Fy_N", "Fz_N"] {
                 let off = |figure, rmse: &str| {
                     (mean(&report, figure, force, model) - json[rmse]["rmse"][force].as_f64().expect("a number")).abs()

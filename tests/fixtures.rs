@@ -4,26 +4,15 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::util::Dir;
-use crate::util::repository;
+use crate::util::{Dir, bytes_below, paths_below, repository};
 
 fn fixtures() -> PathBuf {
     repository().join("fixtures")
 }
 
-fn files(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let (mut found, mut folders) = (BTreeMap::new(), vec![root.to_owned()]);
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.file_name().is_some_and(|name| name != "make.sh" && name != "README.md") {
-                let bytes = std::fs::read(&path).expect("a file");
-                found.insert(path.strip_prefix(root).expect("within it").to_owned(), bytes);
-            }
-        }
-    }
+fn files(root: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = bytes_below(root);
+    found.retain(|name, _| !name.ends_with("make.sh") && !name.ends_with("README.md"));
     found
 }
 
@@ -70,22 +59,11 @@ fn commands(page: &str) -> Vec<(String, Option<String>)> {
     found
 }
 
-fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            pages(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "md") {
-            found.push(path);
-        }
-    }
-}
-
 /// Each page's commands that use fixtures, or what such a command of the same page made, in the page's order.
 #[test]
 fn the_commands_of_readme_and_book_that_use_fixtures_work() {
-    let mut all = vec![repository().join("README.md")];
-    pages(&repository().join("docs"), &mut all);
+    let mut all = paths_below(&repository().join("docs"), ".md");
+    all.push(repository().join("README.md"));
     all.sort();
     let program = Path::new(env!("CARGO_BIN_EXE_lunula")).parent().expect("its folder");
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default());

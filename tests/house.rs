@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use regex_lite::Regex;
 
-use crate::util::repository;
+use crate::util::{paths_below, repository};
 
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
 const FLOORS: [&[&str]; 10] = [
@@ -30,34 +30,23 @@ fn modules(root: &Path) -> BTreeMap<Module, Vec<Module>> {
     let line = Regex::new(r"(?ms)^\s*(pub(\([^)]*\))?\s+)?use\s+((crate|super|self)\b[^;]*);").expect("a pattern");
     let tests = Regex::new(r"#\[cfg\(test\)\]\s*(?:pub(?:\([^)]*\))?\s+)?mod (\w+)( \{|;)").expect("a pattern");
     let (mut found, mut only_tests) = (BTreeMap::new(), Vec::new());
-    let mut folders = vec![root.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).expect("a folder of the repository") {
-            let path: PathBuf = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let inner = path.strip_prefix(root).expect("within it").with_extension("");
-            let mut module: Module = inner.iter().map(|part| part.to_string_lossy().into_owned()).collect();
-            if path.extension().is_none_or(|ending| ending != "rs") {
-                continue;
-            }
-            if module.last().is_some_and(|name| ["mod", "lib", "main"].contains(&name.as_str())) {
-                module.pop();
-            }
-            let text = std::fs::read_to_string(&path).expect("a source file");
-            let mut end = text.len();
-            for test in tests.captures_iter(&text) {
-                only_tests.push([&module[..], &[test[1].to_owned()]].concat());
-                if &test[2] == " {" {
-                    end = end.min(test.get(0).expect("all of it").start());
-                }
-            }
-            let paths = line.captures_iter(&text[..end]).filter(|found| found.get(1).is_none());
-            let paths = paths.flat_map(|found| expanded(&found[3])).map(|path| absolute(&module, &path)).collect();
-            found.insert(module, paths);
+    for path in paths_below(root, ".rs") {
+        let inner = path.strip_prefix(root).expect("within it").with_extension("");
+        let mut module: Module = inner.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        if module.last().is_some_and(|name| ["mod", "lib", "main"].contains(&name.as_str())) {
+            module.pop();
         }
+        let text = std::fs::read_to_string(&path).expect("a source file");
+        let mut end = text.len();
+        for test in tests.captures_iter(&text) {
+            only_tests.push([&module[..], &[test[1].to_owned()]].concat());
+            if &test[2] == " {" {
+                end = end.min(test.get(0).expect("all of it").start());
+            }
+        }
+        let paths = line.captures_iter(&text[..end]).filter(|found| found.get(1).is_none());
+        let paths = paths.flat_map(|found| expanded(&found[3])).map(|path| absolute(&module, &path)).collect();
+        found.insert(module, paths);
     }
     found.retain(|module: &Module, _| !only_tests.iter().any(|tests| module.starts_with(tests)));
     found
@@ -207,22 +196,15 @@ fn no_job_reads_the_wall_clock() {
         "pipeline/store/lock.rs",
     ];
     let reads = Regex::new(r"\b(SystemTime|Timestamp|Zoned|Utc|Local|OffsetDateTime)::now\b").expect("a pattern");
-    let (mut readers, mut folders) = (BTreeSet::new(), vec![PathBuf::from("src"), PathBuf::from("crates")]);
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(repository().join(&folder)).expect("a folder of the repository") {
-            let entry = entry.expect("an entry");
-            let path = folder.join(entry.file_name());
-            if entry.path().is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "rs")
-                && !path.iter().any(|part| part == "tests" || part == "tests.rs")
-                && reads.is_match(&std::fs::read_to_string(entry.path()).expect("a source file"))
-            {
-                readers.insert(path);
-            }
-        }
-    }
-    assert_eq!(readers, READERS.map(|name| Path::new("src").join(name)).into());
+    let all = ["src", "crates"].map(|folder| paths_below(&repository().join(folder), ".rs")).concat();
+    let is_reader = |path: &&PathBuf| {
+        let inner = path.strip_prefix(repository()).expect("within it");
+        !inner.iter().any(|part| part == "tests" || part == "tests.rs")
+            && reads.is_match(&std::fs::read_to_string(path).expect("a source file"))
+    };
+    let readers: BTreeSet<&PathBuf> = all.iter().filter(is_reader).collect();
+    let known = READERS.map(|name| repository().join("src").join(name));
+    assert_eq!(readers, known.iter().collect());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
 use crate::util::Dir;
-use crate::util::running::{PATIENCE, start};
+use crate::util::running::{PATIENCE, start, started};
 
 /// A row: P1 is 1 V and half a volt per newton of pressing.
 fn row(t_s: f64, pressing_n: f64) -> String {
@@ -58,8 +58,7 @@ fn live_and_batch_and_every_speed_give_the_same_bytes() {
     let without: String = fast.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect();
     assert_eq!(without, dir.text("p.csv"));
     // Ten presses and releases, a half newton after each begins.
-    let events: Vec<serde_json::Value> =
-        dir.text("a.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let events = dir.json_lines("a.jsonl");
     assert_eq!(events.len(), 20);
     for (k, pair) in events.chunks(2).enumerate() {
         let at = |event: &serde_json::Value| event["t"].as_f64().unwrap() - 2.0 * k as f64 - 1.0;
@@ -85,9 +84,10 @@ fn a_modulated_log_is_answered_as_the_batch_answers_it_under_the_same_rule() {
     }
     dir.write("log.csv", &text);
     dir.lunula(&["predict", "m.json", "log.csv", "--ambient", "preceding", "--out", "p.csv", "-q"]).expect(0);
-    let live = dir.lunula(&["live", "--source", "log.csv", "--model", "m.json", "--f-min", "9"]).expect(0);
-    let live = live.says("the unlit row before it is taken away");
-    let live = live.says("note: --f-min is of no use here: only a model of force and one of posture");
+    let live = dir.words("live --source log.csv --model m.json --f-min 9").expect(0).says_all(&[
+        "the unlit row before it is taken away",
+        "note: --f-min is of no use here: only a model of force and one of posture",
+    ]);
     assert_eq!(live.stdout, dir.text("p.csv"));
     assert_eq!(live.stdout.lines().count(), 201);
     // However the bytes are cut.
@@ -196,8 +196,7 @@ fn spoilt_rows_cost_themselves_and_are_counted() {
 #[test]
 fn silence_lets_go_in_time_and_what_still_presses_does_not_press() {
     let dir = desk();
-    let mut running =
-        start(&dir, &["live", "--source", "-", "--model", "m.json", "--switch", "sw.toml", "--events", "e.jsonl"]);
+    let mut running = started(&dir, "live --source - --model m.json --switch sw.toml --events e.jsonl");
     running.write("time_s,P1,Fz_N\n");
     for k in 0..20 {
         running.write(&row(0.01 * f64::from(k), if k < 10 { 0.0 } else { 1.0 }));
@@ -243,24 +242,8 @@ fn a_device_that_goes_away_is_waited_for() {
             gone = Instant::now();
         }
     });
-    let mut running = start(
-        &dir,
-        &[
-            "live",
-            "--source",
-            &source,
-            "--model",
-            "m.json",
-            "--switch",
-            "sw.toml",
-            "--events",
-            "e.jsonl",
-            "--out",
-            "r.csv",
-            "--seconds",
-            "10.2",
-        ],
-    );
+    let all = format!("live --source {source} --model m.json --switch sw.toml --events e.jsonl --out r.csv");
+    let mut running = started(&dir, &format!("{all} --seconds 10.2"));
     running.hears("state: lost");
     running.hears("state: reconnecting");
     running.hears("state: ok");
@@ -298,22 +281,17 @@ fn rows_are_handed_out_over_tcp_too() {
 fn bad_sources_are_said_with_what_to_do() {
     let dir = desk();
     let live = |source: &str, words: &[&str]| {
-        let answer = dir.lunula(&["live", "--source", source, "--model", "m.json"]).expect(2);
-        words.iter().fold(answer, |answer, words| answer.says(words));
+        dir.lunula(&["live", "--source", source, "--model", "m.json"]).refuses(words);
     };
     live("serial:/dev/ttyNowhere?baud=9600", &["serial:/dev/ttyNowhere?baud=9600: does not exist"]);
     live("nowhere.csv", &["nowhere.csv: does not exist"]);
     live("tcp:127.0.0.1:1", &["tcp:127.0.0.1:1: refuses", "start the device"]);
-    for (source, words) in [
-        ("serial:/dev/ttyX?bd=3", "there is no `bd` here"),
-        ("serial:/dev/ttyX?baud=x", "no number of bits in a second"),
-        ("tcp:host", "is no HOST:PORT"),
-        ("r.csv?rate=0", "`rate=0`: write a number above zero"),
-        ("lsl:name=x", "lsl"),
-        ("", "it names nothing"),
-    ] {
-        dir.lunula(&["live", "--source", source, "--model", "m.json"]).expect(2).says(words);
-    }
+    live("serial:/dev/ttyX?bd=3", &["there is no `bd` here"]);
+    live("serial:/dev/ttyX?baud=x", &["no number of bits in a second"]);
+    live("tcp:host", &["is no HOST:PORT"]);
+    live("r.csv?rate=0", &["`rate=0`: write a number above zero"]);
+    live("lsl:name=x", &["lsl"]);
+    live("", &["it names nothing"]);
     // Counts where volts are needed; a wrong baud rate; other columns than the model's.
     let counts: String = (0..40).map(|k| format!("{k},{}\n", 6553 + k)).collect();
     dir.write("counts.csv", format!("time_s,P1\n{counts}"));
@@ -374,8 +352,7 @@ fn rows_that_are_left_out_and_clocks_that_begin_again_are_warned_of() {
     let milliseconds = (0..50).map(|k| format!("{},1\n", 10 * k)).collect::<String>();
     record("ms.csv", format!("time_s,P1\n{milliseconds}")).says("rows are 10 s apart, if the stamps are in seconds");
     let said = ["record", "--source", "ms.csv", "--time-unit", "ms", "--out", "said.csv"];
-    let said = dir.lunula(&said).expect(0);
-    assert!(!said.stderr.contains("apart"), "{}", said.stderr);
+    dir.lunula(&said).expect(0).never_says("apart");
 }
 
 #[test]
@@ -425,8 +402,7 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     assert!(warnings.contains("a.csv, b.csv: the same to the byte") && !warnings.contains("is missed"), "{warnings}");
     assert!(dir.path("s-curve.png").exists() && dir.path("s-curve.svg").exists());
     let evaluate = ["switch", "evaluate", "s.toml", "c.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
-    let said = dir.lunula(&[&evaluate[..], &["--out", "ev"]].concat()).expect(0).stdout;
-    assert!(said.contains("0 of 60 presses missed"), "{said}");
+    dir.lunula(&[&evaluate[..], &["--out", "ev"]].concat()).expect(0).prints("0 of 60 presses missed");
     let judged = dir.parsed("ev/switch.json");
     assert_eq!(
         (&judged["presses"], &judged["missed"], &judged["false_per_hour"]),
@@ -441,13 +417,8 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     let live = ["live", "--source", "c.csv", "--model", "m.json", "--switch", "s.toml", "--events", "e.jsonl", "-q"];
     dir.lunula(&live).expect(0);
     let presses: Vec<String> = dir.table("ev/presses.csv").iter().map(|row| row["press_s"].clone()).collect();
-    let events: Vec<String> = dir
-        .text("e.jsonl")
-        .lines()
-        .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap())
-        .filter(|event| event["event"] == "press")
-        .map(|event| event["t"].to_string())
-        .collect();
+    let events = dir.json_lines("e.jsonl").into_iter().filter(|event| event["event"] == "press");
+    let events: Vec<String> = events.map(|event| event["t"].to_string()).collect();
     assert_eq!(events, presses);
     // Thresholds are of the model whose predictions chose them.
     let model = dir.parsed("m.json")["sha256"].as_str().unwrap().to_owned();
@@ -510,8 +481,7 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     };
     dir.write("good.csv", recording(20.0));
     dir.write("copy.csv", recording(20.0));
-    let good = judge(&dir, "good.csv", &[]).expect(0);
-    assert!(!good.stderr.contains("warning") && !good.stderr.contains("not known"), "{}", good.stderr);
+    let good = judge(&dir, "good.csv", &[]).expect(0).never_says("warning").never_says("not known");
     judge(&dir, "good.csv", &["copy.csv"]).expect(0).says("good.csv, copy.csv: the same to the byte");
     judge(&dir, "train.csv", &[]).expect(0).says("train.csv: the model was trained on this");
     judge(&dir, "good.csv", &["--ambient", "interpolated", "--stream", "x"])
@@ -745,8 +715,7 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
     let report = mouse(&["--json"]).expect(0).json();
     assert_eq!((&report["pointer"]["clicks"], &report["pointer"]["y_counts"]), (&1.into(), &0.into()), "{report}");
     let moved = report["pointer"]["x_counts"].as_i64().unwrap();
-    let events: Vec<serde_json::Value> =
-        dir.text("e.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let events = dir.json_lines("e.jsonl");
     let sum: i64 = events.iter().filter(|one| one["event"] == "move").map(|one| one["dx"].as_i64().unwrap()).sum();
     assert!(moved > 50 && sum == moved, "{moved}, {sum}");
     let buttons: Vec<bool> =

@@ -52,8 +52,7 @@ fn forces_of_a_second_device_are_recorded_at_the_times_of_samples() {
     });
     dir.write("f.csv", forces);
     let all = ["record", "--source", "p.csv", "--force", "f.csv", "--out"];
-    let said = dir.lunula(&[&all[..], &["j.csv"]].concat()).expect(0);
-    said.says("rows have no force");
+    dir.lunula(&[&all[..], &["j.csv"]].concat()).expect(0).says("rows have no force");
     let text = dir.text("j.csv");
     assert!(text.starts_with("time_s,P1,Fz_N\n"), "{text}");
     let mut known = 0;

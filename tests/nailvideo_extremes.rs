@@ -58,8 +58,7 @@ fn a_nail_that_comes_into_the_picture_is_found_then() {
     let mut file = dir.parsed("out/nail.json");
     file["lunulaFrame"] = json!(1000);
     dir.write("beyond.json", file.to_string());
-    let beyond = dir.words("nailvideo late.mp4 --outline beyond.json --out beyond").expect(2);
-    beyond.says("beyond.json").says("frame 1000");
+    dir.words("nailvideo late.mp4 --outline beyond.json --out beyond").expect(2).says("beyond.json").says("frame 1000");
     // Drawn on the first frame there is nothing to follow: no figures.
     dir.words("nailvideo late.mp4 --outline s/outline.json --no-figures --out drawn");
     let rows = if dir.path("drawn").exists() { dir.table("drawn/photodiodes.csv") } else { Vec::new() };
@@ -71,8 +70,7 @@ fn a_nail_that_comes_into_the_picture_is_found_then() {
 fn an_outline_beside_the_nail_is_warned_of() {
     let dir = Dir::new();
     dir.words(&REST.replace("--seconds 6", "--seconds 1")).expect(0);
-    let right = dir.words(JOB).expect(0);
-    assert!(!right.stderr.contains("by the network"), "{}", right.stderr);
+    dir.words(JOB).expect(0).never_says("by the network");
     outline(&dir, "beside.json", |shapes| {
         shapes.iter_mut().for_each(|shape| *shape = moved(shape, |[x, y]| [x + 20.0, y]));
     });
@@ -100,7 +98,7 @@ fn without_a_nail_there_is_a_picture_to_draw_it_on() {
     file["shapes"] = json!([{"label": "nail", "points": [[1, 2], [30, 4], [5, 60]], "shape_type": "polygon"}]);
     dir.write("out/nail.json", file.to_string());
     dir.words("nailvideo bare.mp4 --out out").expect(2).says("draw the nail of the first frame");
-    assert_eq!(fs::read_to_string(dir.path("out/nail.json")).expect("a file"), file.to_string());
+    assert_eq!(dir.text("out/nail.json"), file.to_string());
 }
 
 #[test]
@@ -284,8 +282,7 @@ fn hdr_shows_the_nail_of_ordinary_video() {
         println!("{matrix}: {rms} of 100 ln RMS off ordinary video, furthest {furthest}");
         assert!(rms <= bound, "{matrix}: {rms} {furthest}");
         let job = format!("nailvideo s{matrix}/video.mp4 --outline s{matrix}/outline.json --out o{matrix}");
-        let plan = dir.words(&format!("{job} --plan")).expect(0);
-        assert!(plan.stdout.contains(name), "{}", plan.stdout);
+        dir.words(&format!("{job} --plan")).expect(0).prints(name);
         // Frames are of the same levels as ordinary ones.
         let mean = |of: &str| {
             let path = dir.path(&format!("o{of}/frames/000000.png"));

@@ -87,9 +87,8 @@ fn means_and_paired_differences_are_those_made_by_hand() {
     let means = dir.table("o/table.csv");
     assert_eq!(means.len(), 4);
     assert!((number(&means[2], "difference_s") + 6.0).abs() <= 1e-9 && means[0]["difference_s"].is_empty());
-    let files: Vec<String> = dir.bytes_of("o").into_keys().collect();
     assert_eq!(
-        files,
+        dir.names_of("o"),
         [
             "performance-methods.png",
             "performance-methods.svg",
@@ -251,8 +250,7 @@ fn slips_of_names_and_units_are_warned_of() {
     run(&dir, "trials.csv --path-m 1.42 --speed-mps 25 --decisions 27 --out o")
         .expect(0)
         .says("driving alone takes 0.057 s of 192 s in the median");
-    let plain = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
-    assert!(!plain.stderr.contains("warning"), "{}", plain.stderr);
+    run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).never_says("warning");
 }
 
 /// Five operators who differ by a tenth or so, six trials by two methods.
@@ -306,15 +304,10 @@ fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
         parquet.write(&[Value::Text(&row["operator"]), Value::Text(&row["method"]), trial, time_s]).unwrap();
     }
     parquet.finish().unwrap();
-    for (from, out) in [
-        ("trials.csv --threads 1", "one"),
-        ("trials.csv --threads 4", "four"),
-        ("trials.parquet --threads 4", "parquet"),
-    ] {
-        run(&dir, &format!("{from} {COURSE} --out {out}")).expect(0);
-    }
-    let [one, four, mut parquet] = ["one", "four", "parquet"].map(|out| dir.results_of(out));
-    assert!(one.len() == 7 && one == four);
+    let one = dir.on_any_threads(&format!("performance trials.csv {COURSE} --out {{out}}"));
+    assert_eq!(one.len(), 7);
+    run(&dir, &format!("trials.parquet {COURSE} --out parquet")).expect(0);
+    let mut parquet = dir.results_of("parquet");
     let figures = String::from_utf8(parquet["performance.json"].clone()).unwrap();
     parquet.insert("performance.json".to_owned(), figures.replace("trials.parquet", "trials.csv").into_bytes());
     assert!(one == parquet);
@@ -324,8 +317,7 @@ fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
 fn a_plan_writes_nothing() {
     let dir = Dir::new();
     dir.write("trials.csv", by_hand());
-    let plan = run(&dir, &format!("trials.csv {COURSE} --plan")).expect(0).stdout;
-    assert!(plan.contains("learning curves") && plan.contains("no --out"), "{plan}");
+    run(&dir, &format!("trials.csv {COURSE} --plan")).expect(0).prints("learning curves").prints("no --out");
     run(&dir, &format!("trials.csv {COURSE} --no-figures --out o")).expect(0);
     assert!(!dir.path("o/performance-methods.png").exists() && dir.path("o/performance.json").is_file());
 }

@@ -97,7 +97,7 @@ fn the_exact_angles_label_a_log_without_a_video() {
     run(&dir, "--protocol bending --seed 3 --clock-offset 754 --clock-drift-ppm 80 --out s").expect(0);
     let angles = dir.table("s/truth/angles.csv");
     assert_eq!(angles.len(), 1800);
-    let header = std::fs::read_to_string(dir.path("s/truth/angles.csv")).unwrap();
+    let header = dir.text("s/truth/angles.csv");
     let columns = "frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status,\
         clock_read_s,clock_sd_s,clock_low_s,clock_high_s";
     assert_eq!(header.lines().next(), Some(columns));

@@ -41,8 +41,7 @@ fn the_sensor_that_is_worn_logs_the_green_of_the_same_nail() {
         assert!(ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() <= 0.012), "{photodiode}");
     }
     // `phantom log` of the same person and the same finger reads the same volts.
-    dir.lunula(&["phantom", "log", "--sensor", "nail", "--force", "spiral", "--spiral-seconds", "3", "--lead", "0"])
-        .expect(2);
+    dir.words("phantom log --sensor nail --force spiral --spiral-seconds 3 --lead 0").expect(2);
     let more = "phantom log --sensor nail --force spiral --spiral-seconds 3 --lead 0 --trail 0 --rate 50 --no-led \
                 --ambient 0 --clock-offset 0 --out l";
     dir.words(more).expect(0);
@@ -88,7 +87,7 @@ fn photodiodes_lie_where_the_file_says() {
     let names: Vec<&str> = log[0].keys().map(String::as_str).collect();
     assert_eq!(names, ["Fx_N", "Fy_N", "Fz_N", "P2", "time_s", "tip"]);
     assert!(frames[0].contains_key("tip_hidden") && !frames[0].contains_key("P1"));
-    let read = Positions::from_toml(&fs::read_to_string(dir.path("s/positions.toml")).unwrap()).unwrap();
+    let read = Positions::from_toml(&dir.text("s/positions.toml")).unwrap();
     assert_eq!(read, positions);
     for (frame, name) in [(0, "000000"), (60, "000060")] {
         let bytes = fs::read(dir.path(&format!("s/truth/normalized/{name}.npy"))).unwrap();

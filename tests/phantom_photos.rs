@@ -1,11 +1,6 @@
 //! A set of synthetic photographs on disk: what it holds, and that it can be made again.
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
-};
+use std::{collections::BTreeMap, fs, path::Path, sync::atomic::AtomicBool};
 
 use lunula::{
     job::Watch,
@@ -17,6 +12,8 @@ use lunula::{
     },
 };
 use ndarray::Array2;
+
+use crate::util::bytes_below as files;
 
 fn small() -> PhotoOptions {
     PhotoOptions {
@@ -30,25 +27,7 @@ fn small() -> PhotoOptions {
     }
 }
 
-/// Every file under `folder` by its path.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for entry in fs::read_dir(&next).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                let name = path.strip_prefix(folder).expect("within").to_owned();
-                found.insert(name, fs::read(&path).expect("a file"));
-            }
-        }
-    }
-    found
-}
-
-fn written(options: &PhotoOptions, threads: usize) -> BTreeMap<PathBuf, Vec<u8>> {
+fn written(options: &PhotoOptions, threads: usize) -> BTreeMap<String, Vec<u8>> {
     let out = tempfile::tempdir().expect("a folder");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| write(options, out.path())).expect("a set");
@@ -61,7 +40,7 @@ fn same_seed_same_bytes_whatever_the_threads() {
     assert_eq!(one.len(), 10 + 10 + 10 + 10 + 6 + 2);
     assert!(one == written(&small(), 3), "3 threads gave other bytes");
     let other = written(&PhotoOptions { seed: 5, ..small() }, 2);
-    let photograph = Path::new("photos/nominal/s01.png");
+    let photograph = "photos/nominal/s01.png";
     assert!(one.contains_key(photograph) && one[photograph] != other[photograph]);
 }
 
@@ -69,7 +48,7 @@ fn same_seed_same_bytes_whatever_the_threads() {
 fn a_photograph_does_not_depend_on_the_rest_of_the_set() {
     let all = written(&small(), 2);
     let few = written(&PhotoOptions { subjects: 2, poses: vec![Pose::LateralPositive], ..small() }, 2);
-    let photograph = Path::new("photos/lateral_positive/s02.png");
+    let photograph = "photos/lateral_positive/s02.png";
     assert_eq!(all[photograph], few[photograph]);
 }
 
@@ -249,7 +228,7 @@ fn a_set_with_somebody_s_own_files_in_it_is_not_replaced() {
     outline.write(&out.path().join(name)).unwrap();
     refused(&options, out.path(), name);
     refused(&other, out.path(), name);
-    fs::write(out.path().join(name), &first[Path::new(name)]).unwrap();
+    fs::write(out.path().join(name), &first[name]).unwrap();
     // As a run that was killed leaves it: its photographs beside the truth of the set before.
     let next = tempfile::tempdir().unwrap();
     write(&other, next.path()).unwrap();

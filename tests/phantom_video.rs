@@ -282,7 +282,7 @@ fn the_command_line_paints() {
     let run = |more: &str| {
         let line = format!("phantom video --size 320x180 --seconds 0.2 --x264 ultrafast {more} --out out");
         dir.words(&line).expect(0);
-        let markers = std::fs::read_to_string(dir.path("out/markers.toml")).unwrap();
+        let markers = dir.text("out/markers.toml");
         (markers, dir.table("out/truth/tracks.csv"), dir.table("out/truth/joints.csv"))
     };
     let (markers, tracks, joints) = run("--layout paint");
@@ -296,9 +296,7 @@ fn the_command_line_paints() {
     let (markers, tracks, _) = run("--layout mark --hide index_pip@0+2");
     assert!(!markers.contains("[segments]") && !markers.contains("[joints]"));
     assert_eq!((tracks[0]["status"].as_str(), tracks[0]["seen_x_px"].as_str()), ("hidden", ""));
-    dir.lunula(&["phantom", "video", "--layout", "row", "--joints", "J1", "--out", "bad"])
-        .expect(2)
-        .says("--joints J1: there are J2, J3");
+    dir.words("phantom video --layout row --joints J1 --out bad").expect(2).says("--joints J1: there are J2, J3");
 }
 
 #[test]
@@ -567,8 +565,7 @@ fn the_command_line_writes_each_kind_of_file() {
 fn a_given_trajectory_is_followed() {
     let dir = Dir::new();
     dir.write("bend.csv", "J2_deg,time_s,J3_deg,J1_deg\n10,1.0,5,0\n40,1.5,-5,2\n");
-    dir.lunula(&["phantom", "video", "--size", "160x96", "--trajectory", "bend.csv", "--fps", "20", "--out", "out"])
-        .expect(0);
+    dir.words("phantom video --size 160x96 --trajectory bend.csv --fps 20 --out out").expect(0);
     let rows = dir.table("out/truth/joints.csv");
     assert_eq!(rows.len(), 10);
     let degrees = |row: usize, joint: &str| rows[row][joint].parse::<f64>().unwrap();
@@ -582,10 +579,7 @@ fn a_given_trajectory_is_followed() {
         ("time_s,J1_deg,J2_deg,J3_deg\n", "has no rows"),
     ] {
         dir.write("bad.csv", table);
-        dir.lunula(&["phantom", "video", "--trajectory", "bad.csv", "--out", "bad"])
-            .expect(2)
-            .says(words)
-            .says("bad.csv");
+        dir.words("phantom video --trajectory bad.csv --out bad").expect(2).says(words).says("bad.csv");
     }
     assert!(!dir.path("bad").exists());
 }

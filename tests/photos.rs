@@ -62,15 +62,7 @@ fn maps_of_sixteen_subjects_equal_the_exact_ones() {
 fn the_same_bytes_whatever_the_thread_count() {
     let dir = Dir::new();
     write(&small_set(5, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
-    dir.lunula(&["photos", "set/photos", "--out", "one", "--threads", "1"]).expect(0);
-    dir.lunula(&["photos", "set/photos", "--out", "four", "--threads", "4"]).expect(0);
-    let (mut one, mut four) = (dir.bytes_of("one"), dir.bytes_of("four"));
-    // These two tell the times.
-    for told in ["run.json", "report.html"] {
-        assert!(one.remove(told).is_some() && four.remove(told).is_some());
-    }
-    assert!(one.len() > 30);
-    assert!(one == four);
+    assert!(dir.on_any_threads("photos set/photos --out {out}").len() > 30);
 }
 
 #[test]
@@ -99,7 +91,7 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
     let one = "flexion/s05.png,again,flexion\nnominal/s01.png,s06,nominal\n";
     dir.write("set/photos/photos.csv", format!("{header}{one}"));
     dir.lunula(&["photos", "set/photos", "--out", "copy"]).expect(0);
-    dir.lunula(&["photos", "merge", "first", "copy", "--out", "twice"])
+    dir.words("photos merge first copy --out twice")
         .expect(0)
         .says("copy/normalized/flexion/again.png, first/normalized/flexion/s05.png: the same to the byte");
     // A subject in two parts, and parts made differently, are refused; what stood stays.
@@ -344,7 +336,7 @@ fn the_report_needs_nothing_else() {
     dir.nail("set/a");
     dir.nail("set/b");
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
-    let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
+    let html = dir.text("out/report.html");
     assert_eq!(html.matches("src=\"data:image/").count(), 5);
     assert!(!html.contains("src=\"http") && !html.contains("<script") && !html.contains("<link"));
     let run = dir.parsed("out/run.json");
@@ -429,8 +421,7 @@ fn a_doubted_outline_is_not_read_as_a_nail() {
         "set/b.json",
         labelme([160, 140], &[("nail?", "polygon", drawn_outline()), ("axis", "line", drawn_axis())]),
     );
-    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
-    assert!(answer.stderr.contains("no polygon labelled `nail`"), "{}", answer.stderr);
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(1).says("no polygon labelled `nail`");
 }
 
 mod real_data {

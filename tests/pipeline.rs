@@ -42,27 +42,13 @@ fn a_plan_writes_nothing_and_is_the_same_before_and_after_but_for_what_stands() 
         lines.map(|line| (line["step"].to_string(), line["reason"].to_string())).collect()
     };
     assert_eq!(steps(&before), steps(&after));
-    let shown = dir.lunula(&["run", "p.toml", "--out", "out", "--plan"]).expect(0).stdout;
-    assert!(shown.contains("maps") && shown.contains("done") && shown.contains("left out"), "{shown}");
+    dir.lunula(&["run", "p.toml", "--out", "out", "--plan"]).expect(0).prints("maps").prints("done").prints("left out");
 }
 
 #[test]
 fn what_is_up_to_date_is_kept_and_only_changes_are_made_again() {
     let dir = Dir::new();
-    dir.lunula(&[
-        "phantom",
-        "photos",
-        "--seed",
-        "5",
-        "--subjects",
-        "3",
-        "--poses",
-        "normal",
-        "--out",
-        "set",
-        "--quiet",
-    ])
-    .expect(0);
+    dir.words("phantom photos --seed 5 --subjects 3 --poses normal --out set --quiet").expect(0);
     dir.write("p.toml", without_phantom(COLORATION).replace("{phantom}/photos/photos", "set/photos"));
     let run = || dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(0).json();
     let first = run();
@@ -97,20 +83,18 @@ fn results_are_the_same_for_any_threads_and_any_folder() {
 #[test]
 fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
     let dir = Dir::new();
-    dir.lunula(&["phantom", "log", "--seed", "1", "--protocol", "touch", "--seconds", "20", "--out", "a", "--quiet"])
-        .expect(0);
+    dir.words("phantom log --seed 1 --protocol touch --seconds 20 --out a --quiet").expect(0);
     let own = without_phantom(&touch());
     dir.write("p.toml", own.replace("{phantom}/log/{session}/log.csv", "{session}/log.csv"));
     dir.write("b/log.csv", "time_s,P1\n0,what\n");
-    let answer = dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(1);
-    assert!(answer.stderr.contains("failed: force/b"), "{}", answer.stderr);
+    let answer = dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(1).says("failed: force/b");
     let report = answer.json();
     assert_eq!(
         (report["done"].as_u64(), report["failed"].as_u64(), report["not_done"].as_u64()),
         (Some(2), Some(1), Some(1))
     );
     assert!(dir.path("out/force/a/model.json").exists());
-    let page = fs::read_to_string(dir.path("out/report.html")).unwrap();
+    let page = dir.text("out/report.html");
     assert!(page.contains("What failed") && page.contains("force/b"));
     let kept = dir.parsed("out/run.json");
     assert_eq!(kept["stages"], report["stages"]);
@@ -123,7 +107,7 @@ fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
 fn faults_name_file_line_and_column_and_nothing_starts() {
     let dir = Dir::new();
     dir.write("p.toml", touch().replace("job = \"train\"", "job = \"trian\"").replace("\"how_good\"]", "\"how_god\"]"));
-    dir.lunula(&["run", "p.toml", "--out", "out"])
+    dir.words("run p.toml --out out")
         .expect(2)
         .says("p.toml:1:20: `how_god` is wanted, and no stage makes it; did you mean `how_good`?")
         .says("p.toml:11:7: no job `trian`; did you mean `train`?");
@@ -146,7 +130,7 @@ fn a_marker_file_of_each_subject_is_that_of_all_their_videos() {
         }
     }
     dir.lunula(&["init", "lab"]).expect(0);
-    let text = fs::read_to_string(dir.path("lab/pipeline.toml")).unwrap();
+    let text = dir.text("lab/pipeline.toml");
     assert!(text.contains("{subject}/{session}.mp4") && text.contains("{subject}/markers.toml"), "{text}");
     dir.lunula(&["run", "lab/pipeline.toml", "--plan"]).expect(0);
 }
@@ -155,45 +139,17 @@ fn a_marker_file_of_each_subject_is_that_of_all_their_videos() {
 fn what_init_writes_runs_as_it_stands_and_is_never_overwritten() {
     let dir = Dir::new();
     for (name, seed) in [("S01", "1"), ("S02", "2")] {
-        let out = format!("lab/{name}");
-        dir.lunula(&[
-            "phantom",
-            "log",
-            "--seed",
-            seed,
-            "--protocol",
-            "touch",
-            "--seconds",
-            "20",
-            "--out",
-            &out,
-            "--quiet",
-        ])
-        .expect(0);
+        dir.words(&format!("phantom log --seed {seed} --protocol touch --seconds 20 --out lab/{name} --quiet"))
+            .expect(0);
     }
-    dir.lunula(&[
-        "phantom",
-        "photos",
-        "--seed",
-        "5",
-        "--subjects",
-        "2",
-        "--poses",
-        "normal",
-        "--out",
-        "lab/nails",
-        "--quiet",
-    ])
-    .expect(0);
+    dir.words("phantom photos --seed 5 --subjects 2 --poses normal --out lab/nails --quiet").expect(0);
     dir.lunula(&["init", "lab"]).expect(0);
-    let text = fs::read_to_string(dir.path("lab/pipeline.toml")).unwrap();
+    let text = dir.text("lab/pipeline.toml");
     assert!(text.contains("job = \"maps\"") && text.contains("job = \"train\""), "{text}");
     dir.lunula(&["init", "lab"]).expect(2).says("stands already");
     dir.lunula(&["init", "lab", "--out", "elsewhere.toml"]).expect(0);
-    let (inside, outside) =
-        (["run", "lab/pipeline.toml", "--out", "a", "--quiet"], ["run", "elsewhere.toml", "--out", "b", "--quiet"]);
-    dir.lunula(&inside).expect(0);
-    dir.lunula(&outside).expect(0);
+    dir.words("run lab/pipeline.toml --out a --quiet").expect(0);
+    dir.words("run elsewhere.toml --out b --quiet").expect(0);
     assert_eq!(dir.results_of("a").keys().collect::<Vec<_>>(), dir.results_of("b").keys().collect::<Vec<_>>());
     dir.lunula(&["init", "none"]).expect(2);
 }

@@ -105,7 +105,7 @@ fn a_redrawn_outline_is_noticed() {
     assert_eq!(counts(&run()), [1, 2, 0]);
     std::fs::remove_file(&outline).unwrap();
     assert_eq!(counts(&run()), [2, 1, 0]);
-    let nails = std::fs::read_to_string(dir.path("out/coloration/nails.csv")).unwrap();
+    let nails = dir.text("out/coloration/nails.csv");
     assert_eq!(nails.matches(",detected,").count(), 1, "{nails}");
 }
 
@@ -119,7 +119,7 @@ fn a_subject_that_fails_leaves_the_maps_of_the_others() {
     dir.write("coloration.toml", COLORATION);
     let answer = dir.lunula(&["run", "coloration.toml", "--out", "out", "--json"]).expect(1).says("nails/s02");
     assert_eq!(counts(&answer), [3, 0, 1]);
-    let nails = std::fs::read_to_string(dir.path("out/coloration/nails.csv")).unwrap();
+    let nails = dir.text("out/coloration/nails.csv");
     assert!(nails.contains(",s01,") && nails.contains(",s03,") && !nails.contains(",s02,"), "{nails}");
 }
 

@@ -51,7 +51,7 @@ fn a_clean_scene_gives_every_angle_with_its_time() {
     let dir = scene(&[]);
     let report = posture(&dir, &["--tracks", "tracks.csv", "--json"]).expect(0).json();
     is_accurate(&dir, &["J1", "J2", "J3"]);
-    let header = std::fs::read_to_string(dir.path("joints.csv")).expect("text");
+    let header = dir.text("joints.csv");
     assert_eq!(
         header.lines().next(),
         Some("frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status")
@@ -189,8 +189,7 @@ fn hdr_has_the_angles_and_colours_of_ordinary_video() {
     {
         let (dir, colours) = suggested(&["--matrix", matrix, "--depth", "10"]);
         // The marker file has the colours of ordinary video.
-        let answer = posture(&dir, &["--overlay", "drawn.mp4", "--json"]).expect(0);
-        assert!(answer.stdout.contains(name), "{}", answer.stdout);
+        posture(&dir, &["--overlay", "drawn.mp4", "--json"]).expect(0).prints(name);
         let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
         for (joint, bound) in ["J1", "J2", "J3"].into_iter().zip(bounds) {
             // Cyan paint, as bright as skin, is lost in two frames of hybrid log-gamma: HDR's chroma is coarser.
@@ -250,7 +249,7 @@ fn zero_angles_are_subtracted() {
     let dir = scene(&[]);
     posture(&dir, &[]).expect(0);
     let plain = dir.table("joints.csv");
-    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let markers = dir.text("scene/markers.toml");
     dir.write("scene/markers.toml", markers + "\n[zero]\nJ2_deg = 1.5\n");
     posture(&dir, &[]).expect(0);
     for (a, b) in plain.iter().zip(dir.table("joints.csv")) {
@@ -264,7 +263,7 @@ fn reversed_flexion_is_warned_of_before_all_else() {
     let report = posture(&dir, &["--no-figures", "--json"]).expect(0).json();
     assert!(!report["warnings"].to_string().contains("can't have"), "{report}");
     assert!(report["joints"].as_array().is_some_and(|joints| joints.iter().all(|joint| joint["outside"] == 0)));
-    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let markers = dir.text("scene/markers.toml");
     // A note of the marker file, which comes after.
     let markers = markers.replace("\n[segments]", "spare = \"#000000\"\n\n[segments]");
     dir.write("scene/markers.toml", markers.replace("\"clockwise\"", "\"counterclockwise\""));
@@ -327,10 +326,10 @@ fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
     assert!(median <= PAINT_MEDIAN_DEG, "{median} degrees");
 
     // Without their places nothing says which finger is which.
-    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let markers = dir.text("scene/markers.toml");
     let (without, _) = markers.split_once("[start]").expect("the scene's own places");
     dir.write("without.toml", without);
-    dir.lunula(&["posture", "scene/video.mp4", "--markers", "without.toml", "--out", "none.csv"])
+    dir.words("posture scene/video.mp4 --markers without.toml --out none.csv")
         .expect(2)
         .says("can't tell on which finger")
         .says("thumb_tip");
@@ -357,7 +356,7 @@ fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
 #[test]
 fn thumb_and_index_of_distinct_colours_need_no_start() {
     let dir = painted(&["--seconds", "1", "--seed", "8", "--colours", "distinct"]);
-    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let markers = dir.text("scene/markers.toml");
     assert!(!markers.contains("[start]"));
     posture(&dir, &["--tracks", "tracks.csv", "--no-figures"]).expect(0);
     let (seen, in_view) = is_rightly_named(&dir);
@@ -367,7 +366,7 @@ fn thumb_and_index_of_distinct_colours_need_no_start() {
 #[test]
 fn a_single_marker_has_tracks_and_no_angles() {
     let dir = scene(&["--colours", "distinct"]);
-    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let markers = dir.text("scene/markers.toml");
     let line = |line: &&str| line.starts_with("distal_dist = ") || line.starts_with("hand_prox = ");
     let two: Vec<&str> = markers.lines().filter(line).collect();
     for count in [1, 2] {
@@ -392,11 +391,10 @@ fn a_single_marker_has_tracks_and_no_angles() {
 #[test]
 fn a_plan_says_what_is_left_out_and_does_nothing() {
     let dir = scene(&[]);
-    let plan = dir
-        .lunula(&["posture", "scene/video.mp4", "--markers", "scene/markers.toml", "--joints", "J2", "--plan"])
-        .expect(0);
-    assert!(plan.stdout.contains("left out"), "{}", plan.stdout);
-    assert!(plan.stdout.contains("hand_prox"), "{}", plan.stdout);
+    dir.words("posture scene/video.mp4 --markers scene/markers.toml --joints J2 --plan")
+        .expect(0)
+        .prints("left out")
+        .prints("hand_prox");
     assert_eq!(dir.bytes_of(".").keys().filter(|name| !name.starts_with("scene/")).count(), 0);
 }
 

@@ -235,9 +235,7 @@ fn results_never_replace_the_input_or_one_another() {
 #[test]
 fn a_joint_that_is_not_in_the_file_is_named() {
     let dir = scene(&[]);
-    dir.lunula(&["posture", "scene/video.mp4", "--markers", "markers.toml", "--out", "joints.csv", "--joints", "J4"])
-        .expect(2)
-        .says("J4");
+    dir.words("posture scene/video.mp4 --markers markers.toml --out joints.csv --joints J4").expect(2).says("J4");
 }
 
 mod real_data {

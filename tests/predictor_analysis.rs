@@ -54,11 +54,10 @@ fn modes_are_those_of_the_jacobian_with_signs_fixed() {
         (&"analyse".into(), &Value::Null, &serde_json::json!(inputs))
     );
     near(&numbers(&report["jacobian"]["Fz_N"]), &[0.0, 3.0, 3.0, 0.0], EXACT);
-    let plain = dir.lunula(&["analyse", "m.json"]).expect(0).stdout;
-    assert!(
-        plain.contains("mode 1: singular value 4.24264") && plain.contains("the strongest over the weakest: 6.00"),
-        "{plain}"
-    );
+    dir.lunula(&["analyse", "m.json"])
+        .expect(0)
+        .prints("mode 1: singular value 4.24264")
+        .prints("the strongest over the weakest: 6.00");
 }
 
 #[test]
@@ -189,8 +188,7 @@ fn every_subset_is_compared_and_the_best_of_each_size_reported() {
     dir.lunula(&[&prune[..], &again].concat()).expect(0);
     let again = dir.bytes_of("again");
     assert!(found.iter().filter(|(name, _)| *name != "run.json").all(|(name, bytes)| again[name] == *bytes));
-    let plain = dir.lunula(&prune).expect(0).stdout;
-    assert!(plain.contains("15 subsets") && plain.contains("all, then all but one"), "{plain}");
+    dir.lunula(&prune).expect(0).prints("15 subsets").prints("all, then all but one");
 }
 
 #[test]
@@ -239,10 +237,7 @@ fn of_seventeen_photodiodes_the_one_missed_least_is_removed_again_and_again() {
         let force = |row: usize, _: f64| (0..17).map(|k| 2f64.powi(-(k as i32)) * volt(first + row, k)).sum();
         dir.recording(name, &wide.map("Fz_N", force));
     }
-    let report = dir
-        .lunula(&["prune", "a.csv", "--validate", "b.csv", "--target", "Fz_N", "--json", "--out", "pr"])
-        .expect(0)
-        .json();
+    let report = dir.words("prune a.csv --validate b.csv --target Fz_N --json --out pr").expect(0).json();
     assert_eq!((&report["subsets"], &report["inputs"]), (&17.into(), &serde_json::json!(names)));
     for (k, row) in report["best_of_size"].list().iter().enumerate() {
         assert_eq!(names_of(row), names[..=k].join(" "), "the strongest {} are left", k + 1);
@@ -266,15 +261,11 @@ fn a_request_that_is_wrong_says_so() {
         .into_iter()
         .fold(Recording::of(200..300), |all, name| all.map(name, |_, volts| 1000.0 * volts));
     dir.recording("mV.csv", &millivolts);
-    dir.lunula(&["prune", "a.csv", "--validate", "mV.csv", "--target", "Fz_N", "--inputs", "P1,P2,P3,P4"])
-        .expect(0)
-        .says("in another unit?");
+    dir.words("prune a.csv --validate mV.csv --target Fz_N --inputs P1,P2,P3,P4").expect(0).says("in another unit?");
     dir.lunula(&["prune", "a.csv", "--validate", "b.csv"]).expect(2).says("has no column `Fx_N`. Its columns are");
     dir.lunula(&["prune", "a.csv", "--validate", "nowhere.csv", "--target", "Fz_N"]).expect(2).says("nowhere.csv");
     dir.recording("c.csv", &Recording::of(0..50).without("P4"));
-    dir.lunula(&["prune", "a.csv", "--validate", "c.csv", "--target", "Fz_N"])
-        .expect(2)
-        .says("c.csv: has no column `P4`");
+    dir.words("prune a.csv --validate c.csv --target Fz_N").expect(2).says("c.csv: has no column `P4`");
     dir.lunula(&["analyse", "nowhere.json"]).expect(2).says("nowhere.json: is not there");
     dir.lunula(&["analyse", "a.csv"]).expect(2).says("a.csv: is no model of lunula");
     let same = dir.lunula(&["prune", "a.csv", "--validate", "a.csv", "--target", "Fz_N"]).expect(0);

@@ -14,8 +14,7 @@ fn sensor() -> Dir {
 
 #[track_caller]
 fn refused(dir: &Dir, words: &[&str]) {
-    let answer = dir.train("a.csv", "force", "m.json", &[]).expect(2);
-    words.iter().fold(answer, |answer, words| answer.says(words));
+    dir.train("a.csv", "force", "m.json", &[]).refuses(words);
     assert!(!dir.path("m.json").exists());
 }
 
@@ -60,7 +59,7 @@ fn the_first_wrong_cell_of_the_first_wrong_file_is_reported() {
         "prune a.csv --validate b.csv",
         "prune b.csv --validate a.csv",
     ] {
-        dir.lunula(&command.split(' ').collect::<Vec<_>>()).expect(2).says("b.csv:3: column `P1`: `z`");
+        dir.words(command).expect(2).says("b.csv:3: column `P1`: `z`");
         let dropped: Vec<&str> = command.split(' ').chain(["--drop-invalid"]).collect();
         dir.lunula(&dropped).expect(0);
     }
@@ -70,8 +69,7 @@ fn the_first_wrong_cell_of_the_first_wrong_file_is_reported() {
 fn empty_cells_are_left_out_and_counted() {
     let dir = sensor();
     dir.recording("a.csv", &Recording::of(0..60).cell(3, "P4", "").cell(9, "Fz_N", "").cell(20, "time_s", ""));
-    let plain = dir.train("a.csv", "force", "m.json", &[]).expect(0);
-    assert!(plain.stdout.contains("a.csv: 58 of 60 rows used (2 lack a cell, 0 invalid"), "{}", plain.stdout);
+    dir.train("a.csv", "force", "m.json", &[]).expect(0).prints("a.csv: 58 of 60 rows used (2 lack a cell, 0 invalid");
 }
 
 #[test]
@@ -198,7 +196,7 @@ fn a_model_file_that_does_not_fit_is_refused_with_the_reason() {
     // The same fault is refused by every command.
     edited(&dir, |m| m["version"] = json!(2)).expect(2);
     for command in ["predict edited.json b.csv --out p.csv", "predict edited.json -", "analyse edited.json"] {
-        dir.lunula(&command.split(' ').collect::<Vec<_>>()).expect(2).says("edited.json: is a model file of version 2");
+        dir.words(command).expect(2).says("edited.json: is a model file of version 2");
     }
 }
 
@@ -297,7 +295,5 @@ fn a_recording_that_cant_be_read_is_skipped_only_where_that_is_asked_for() {
     let model = dir.parsed("m.json");
     assert_eq!((&model["training"]["failed"], &model["training"]["rows"]), (&json!(["bad.csv"]), &json!(120)));
     dir.lunula(&["evaluate", "m.json", "a.csv"]).expect(0);
-    dir.lunula(&["train", "bad.csv", "--target", "force", "--out", "n.json", "--skip-failed"])
-        .expect(2)
-        .says("bad.csv");
+    dir.words("train bad.csv --target force --out n.json --skip-failed").expect(2).says("bad.csv");
 }

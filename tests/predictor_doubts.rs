@@ -23,7 +23,7 @@ fn turn(cells: &mut [String], by_deg: f64) {
 }
 
 fn write_changed(dir: &Dir, from: &str, to: &str, change: Change<'_>) {
-    let text = std::fs::read_to_string(dir.path(from)).expect("a log");
+    let text = dir.text(from);
     let (head, rows) = text.split_once('\n').expect("rows");
     let changed = rows.lines().map(|line| {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
@@ -41,7 +41,7 @@ fn phantom(dir: &Dir, [subject, session, seed]: [&str; 3], protocol: &str, senso
 
 /// The lit rows of a log, without the column that says so.
 fn write_lit(dir: &Dir, log: &str, name: &str) {
-    let log = std::fs::read_to_string(dir.path(log)).expect("a log");
+    let log = dir.text(log);
     let lit = log.lines().filter(|line| line.split(',').nth(1) != Some("0"));
     let table = lit.map(|line| {
         let cells: Vec<&str> = line.split(',').collect();
@@ -94,7 +94,7 @@ fn every_other_row_is_no_recording_to_validate_on() {
     let dir = Dir::new();
     phantom(&dir, ["1", "1", "3"], "touch-random", "nail", "a");
     phantom(&dir, ["1", "1", "4"], "touch-random", "nail", "b");
-    let log = std::fs::read_to_string(dir.path("a/log.csv")).expect("a log");
+    let log = dir.text("a/log.csv");
     let lines: Vec<&str> = log.lines().collect();
     // Lit and unlit rows come by turns: pairs of them.
     let of = |which: usize| {
@@ -139,7 +139,7 @@ fn a_column_that_hangs_is_warned_of() {
     let answer = dir.lunula(&["train", "t.csv", "--target", "force", "--out", "m.json"]).expect(0);
     answer.says("t.csv: P4 doesn't change by a digit");
     // All of them, whatever the force does.
-    let text = std::fs::read_to_string(dir.path("t.csv")).expect("a table");
+    let text = dir.text("t.csv");
     let mut kept = String::new();
     let all = text.lines().map(|line| {
         let mut cells: Vec<&str> = line.split(',').collect();

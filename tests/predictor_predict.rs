@@ -125,9 +125,7 @@ fn force_and_posture_are_gated() {
         let wrong = [&["predict", "force.json", "posture.json", "r.csv", "--out", "q.csv"], &more[..]].concat();
         dir.lunula(&wrong).expect(2).says(words);
     }
-    dir.lunula(&["predict", "force.json", "force.json", "r.csv", "--out", "q.csv"])
-        .expect(2)
-        .says("two models tell Fx_N");
+    dir.words("predict force.json force.json r.csv --out q.csv").expect(2).says("two models tell Fx_N");
     assert!(!dir.path("q.csv").exists());
 }
 

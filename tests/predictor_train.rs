@@ -126,12 +126,10 @@ fn the_report_has_the_fit_the_rows_and_the_errors() {
     assert!(report["stages"].list().iter().any(|stage| stage["stage"] == "fit"));
     assert!(report["left_out"].to_string().contains("learning curve"), "{}", report["left_out"]);
 
-    let plain = dir.train("train.csv", "force", "m.json", &["--validate", "held.csv"]).expect(0);
-    assert!(
-        plain.stdout.contains("Fz_N     RMSE   0.0000") && plain.stdout.contains("validated (100 rows)"),
-        "{}",
-        plain.stdout
-    );
+    dir.train("train.csv", "force", "m.json", &["--validate", "held.csv"])
+        .expect(0)
+        .prints("Fz_N     RMSE   0.0000")
+        .prints("validated (100 rows)");
     assert_eq!(dir.train("train.csv", "force", "m.json", &["-q"]).expect(0).stdout, "");
 }
 
@@ -450,20 +448,7 @@ fn a_plan_does_nothing() {
 fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
     let dir = Dir::new();
     for seed in ["1", "2"] {
-        dir.lunula(&[
-            "phantom",
-            "log",
-            "--force",
-            "spiral",
-            "--spiral-seconds",
-            "20",
-            "--seed",
-            seed,
-            "--out",
-            seed,
-            "-q",
-        ])
-        .expect(0);
+        dir.words(&format!("phantom log --force spiral --spiral-seconds 20 --seed {seed} --out {seed} -q")).expect(0);
     }
     let report = dir.train("1/log.csv", "force", "m.json", &["--validate", "2/log.csv", "--json"]).expect(0).json();
     // Half of a log's rows are unlit.

@@ -86,16 +86,8 @@ fn film(from: &Path, to: &Path, sheet: &GrayImage) {
 fn in_browser_the_pages_clock_is_read_from_a_video_by_the_snippet() {
     let dir = Dir::new();
     let fixture = repository().join("fixtures/finger");
-    let truth = dir.lunula(&[
-        "posture",
-        &fixture.join("video.mp4").to_string_lossy(),
-        "--markers",
-        &fixture.join("markers.toml").to_string_lossy(),
-        "--out",
-        "truth.csv",
-        "-q",
-    ]);
-    truth.expect(0);
+    let [video, markers] = ["video.mp4", "markers.toml"].map(|name| fixture.join(name).display().to_string());
+    dir.lunula(&["posture", &video, "--markers", &markers, "--out", "truth.csv", "-q"]).expect(0);
     let times_s: Vec<f64> =
         dir.table("truth.csv").iter().map(|row| BEGINS_S + row["time_s"].parse::<f64>().expect("a time")).collect();
     let sheet = sheet(&dir, &times_s);

@@ -1,11 +1,10 @@
 //! Standard output that can't be written to: a full disk is an error, a reader that went away is none. All commands.
 
 use std::fs::{File, OpenOptions};
-use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::doctor::commands;
-use crate::util::{Dir, repository};
+use crate::util::{Dir, paths_below, repository};
 
 const PIPELINE: &str = r#"
 [inputs.photos]
@@ -82,8 +81,7 @@ fn bench() -> Dir {
         "photos ph/photos --out whole -q",
         "run p.toml --shard 1/1 --out part -q",
     ] {
-        let words: Vec<&str> = request.split(' ').collect();
-        dir.lunula(&words).expect(0);
+        dir.words(request).expect(0);
     }
     dir
 }
@@ -122,24 +120,9 @@ fn on_a_full_disk_every_command_fails_and_a_reader_that_went_away_is_no_error() 
     }
 }
 
-/// Files of source text below a folder.
-fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-}
-
 #[test]
 fn nothing_but_one_file_writes_to_standard_output() {
-    let mut files = Vec::new();
-    for folder in ["src", "crates/cli/src"] {
-        sources(&repository().join(folder), &mut files);
-    }
+    let files = ["src", "crates/cli/src"].map(|folder| paths_below(&repository().join(folder), ".rs")).concat();
     let mut read = 0;
     for path in
         files.iter().filter(|path| !path.ends_with("cli/src/out.rs") && !path.to_string_lossy().contains("tests"))

@@ -86,13 +86,8 @@ fn random_forces_begin_at_rest_stay_in_the_cone_and_are_the_seeds() {
         let [fx, fy, fz] = forces(row);
         assert!((-2.0..=0.0).contains(&fz) && fx.hypot(fy) <= -0.5 * fz + 2.0 * FORCE_N);
     }
-    let without_times = |name: &str| {
-        let mut bytes = dir.bytes_of(name);
-        bytes.remove("t.run.json");
-        bytes
-    };
-    assert!(without_times("one") == without_times("same"));
-    assert!(without_times("one")["t.csv"] != without_times("other")["t.csv"]);
+    assert!(dir.results_of("one") == dir.results_of("same"));
+    assert!(dir.text("one/t.csv") != dir.text("other/t.csv"));
 }
 
 #[test]

@@ -39,10 +39,34 @@ impl Answer {
         self
     }
 
+    #[track_caller]
+    pub fn never_says(self, words: &str) -> Self {
+        assert!(!self.stderr.contains(words), "`{words}` is in:\n{}", self.stderr);
+        self
+    }
+
+    #[track_caller]
+    pub fn says_all(self, words: &[&str]) -> Self {
+        words.iter().fold(self, |answer, words| answer.says(words))
+    }
+
     /// A refusal that says all of this.
     #[track_caller]
     pub fn refuses(self, words: &[&str]) -> Self {
-        words.iter().fold(self.expect(2), |answer, words| answer.says(words))
+        self.expect(2).says_all(words)
+    }
+
+    /// The same of standard output.
+    #[track_caller]
+    pub fn prints(self, words: &str) -> Self {
+        assert!(self.stdout.contains(words), "`{words}` is not in:\n{}", self.stdout);
+        self
+    }
+
+    #[track_caller]
+    pub fn never_prints(self, words: &str) -> Self {
+        assert!(!self.stdout.contains(words), "`{words}` is in:\n{}", self.stdout);
+        self
     }
 
     pub fn json(&self) -> serde_json::Value {
@@ -135,28 +159,33 @@ impl Dir {
 
     /// All files below `folder` with their bytes, by name.
     pub fn bytes_of(&self, folder: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
-        fn walk(root: &Path, at: &Path, found: &mut std::collections::BTreeMap<String, Vec<u8>>) {
-            for entry in std::fs::read_dir(at).expect("a folder") {
-                let path = entry.expect("an entry").path();
-                if path.is_dir() {
-                    walk(root, &path, found);
-                } else {
-                    let name = path.strip_prefix(root).expect("below").to_string_lossy().into_owned();
-                    found.insert(name, std::fs::read(&path).expect("a file"));
-                }
-            }
-        }
-        let root = self.path(folder);
-        let mut found = std::collections::BTreeMap::new();
-        walk(&root, &root, &mut found);
-        found
+        bytes_below(&self.path(folder))
+    }
+
+    /// The names of all files below `folder`.
+    pub fn names_of(&self, folder: &str) -> Vec<String> {
+        self.bytes_of(folder).into_keys().collect()
     }
 
     /// All results under `folder`, without what holds times.
     pub fn results_of(&self, folder: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
         let mut found = self.bytes_of(folder);
-        found.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");
+        let is_timed = |name: &str| name.ends_with("report.html") || name.ends_with("run.json");
+        found.retain(|name, _| !name.starts_with(".lunula/") && !is_timed(name));
         found
+    }
+
+    /// The results of a command line, which puts them into the folder `{out}`: the same bytes on one thread and on four.
+    #[track_caller]
+    pub fn on_any_threads(&self, line: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
+        let [one, four] = [("one", 1), ("four", 4)].map(|(out, threads)| {
+            self.words(&format!("{} --threads {threads}", line.replace("{out}", out))).expect(0);
+            self.results_of(out)
+        });
+        let differ: Vec<&String> =
+            one.keys().chain(four.keys()).filter(|name| one.get(*name) != four.get(*name)).collect();
+        assert!(differ.is_empty(), "{line}: other bytes on four threads: {differ:?}");
+        one
     }
 
     /// A table's rows, each by column.
@@ -168,6 +197,29 @@ impl Dir {
     pub fn array(&self, name: &str) -> ndarray::Array2<f32> {
         ndarray_npy::read_npy(self.path(name)).expect("an array of float32")
     }
+}
+
+/// All files below a folder whose names end so.
+pub fn paths_below(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(paths_below(&path, ending));
+        } else if path.to_string_lossy().ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// All files below a folder with their bytes, by name.
+pub fn bytes_below(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let named = |path: PathBuf| {
+        let name = path.strip_prefix(folder).expect("below").to_string_lossy().into_owned();
+        (name, std::fs::read(&path).expect("a file"))
+    };
+    paths_below(folder, "").into_iter().map(named).collect()
 }
 
 /// The number in a cell of a table; none where it is empty.
@@ -220,8 +272,13 @@ pub fn drawn_labels() -> String {
 impl Dir {
     /// Puts the drawn nail, annotated, at `<name>.png`.
     pub fn nail(&self, name: &str) {
-        drawn_nail().save(self.place(&format!("{name}.png"))).expect("a picture");
-        self.write(&format!("{name}.json"), drawn_labels());
+        self.photo(name, drawn_nail(), drawn_labels());
+    }
+
+    /// Puts a picture at `<name>.png` and a LabelMe file beside it.
+    pub fn photo(&self, name: &str, picture: impl Into<image::DynamicImage>, labels: String) {
+        picture.into().save(self.place(&format!("{name}.png"))).expect("a picture");
+        self.write(&format!("{name}.json"), labels);
     }
 }
 

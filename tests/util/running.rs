@@ -44,6 +44,11 @@ pub fn start(dir: &Dir, arguments: &[&str]) -> Running {
     Running { child, lines, said }
 }
 
+/// The same of a command line whose words have no spaces.
+pub fn started(dir: &Dir, line: &str) -> Running {
+    start(dir, &line.split_whitespace().collect::<Vec<_>>())
+}
+
 impl Running {
     pub fn write(&mut self, text: &str) {
         let to = self.child.stdin.as_mut().expect("open");

@@ -124,6 +124,12 @@ impl Dir {
         serde_json::from_str(&self.text(name)).unwrap_or_else(|why| panic!("{name}: {why}"))
     }
 
+    /// A file of JSON, a value on each line.
+    pub fn json_lines(&self, name: &str) -> Vec<serde_json::Value> {
+        let parsed = |line: &str| serde_json::from_str(line).unwrap_or_else(|why| panic!("{name}: {why}: {line}"));
+        self.text(name).lines().map(parsed).collect()
+    }
+
     /// Trains `model` on `data` (names with spaces in between).
     pub fn train(&self, data: &str, target: &str, model: &str, more: &[&str]) -> super::Answer {
         let data: Vec<&str> = data.split(' ').collect();
