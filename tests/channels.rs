@@ -119,10 +119,7 @@ fn no_channel_is_favoured_where_all_have_the_same_contrast() {
     let rng = &mut ChaCha8Rng::seed_from_u64(2);
     for subject in 0..8 {
         let contrast = 0.06 + 0.005 * f64::from(subject);
-        equal_contrast(contrast, [0.02, 0.3, 0.02], rng)
-            .save(dir.place(&format!("set/s{subject}.png")))
-            .expect("saved");
-        dir.write(&format!("set/s{subject}.json"), drawn_labels());
+        dir.photo(&format!("set/s{subject}"), equal_contrast(contrast, [0.02, 0.3, 0.02], rng), drawn_labels());
     }
     let report = dir.lunula(&["photos", "set", "--out", "out", "--channels", "--json"]).expect(0).json();
     for row in dir.table("out/channels.csv") {
@@ -165,7 +162,7 @@ fn grey_transparent_and_single_ones_and_tones() {
     let dir = Dir::new();
     let mut manifest = "file,subject,pose,tone\n".to_owned();
     for (k, tone) in ["white", "Asian", "white", "black", ""].into_iter().enumerate() {
-        shaded(k as u8).save(dir.place(&format!("set/press-{k}.png"))).expect("saved");
+        dir.photo(&format!("set/press-{k}"), shaded(k as u8), drawn_labels());
         manifest += &format!("press-{k}.png,s{k},normal,{tone}\n");
     }
     // The photograph of s5 does not show the nail's right half, that of s6 is grey, and rest has one subject.
@@ -173,13 +170,10 @@ fn grey_transparent_and_single_ones_and_tones() {
         let [r, g, b] = shaded(2).get_pixel(x, y).0;
         Rgba([r, g, b, if x < 80 { 255 } else { 0 }])
     });
-    hidden.save(dir.place("set/press-5.png")).expect("saved");
-    image::DynamicImage::from(shaded(1)).to_luma8().save(dir.place("set/press-6.png")).expect("saved");
-    shaded(3).save(dir.place("set/rest-0.png")).expect("saved");
+    dir.photo("set/press-5", hidden, drawn_labels());
+    dir.photo("set/press-6", image::DynamicImage::from(shaded(1)).to_luma8(), drawn_labels());
+    dir.photo("set/rest-0", shaded(3), drawn_labels());
     manifest += "press-5.png,s5,normal,Asian\npress-6.png,s6,normal,Asian\nrest-0.png,s0,rest,black\n";
-    for stem in (0..7).map(|k| format!("press-{k}")).chain(["rest-0".into()]) {
-        dir.write(&format!("set/{stem}.json"), drawn_labels());
-    }
     dir.write("set/photos.csv", manifest);
     let plan = dir.lunula(&["photos", "set", "--out", "out", "--plan", "--channels"]).expect(0).stdout;
     assert!(plan.contains("7 colour photograph(s); 1 grey one(s) have none and are left out"), "{plan}");
@@ -208,12 +202,8 @@ fn grey_transparent_and_single_ones_and_tones() {
 #[test]
 fn grey_photographs_alone_have_no_channels_to_compare() {
     let dir = Dir::new();
-    for subject in ["a", "b"] {
-        image::DynamicImage::from(drawn_nail())
-            .to_luma8()
-            .save(dir.place(&format!("set/{subject}.png")))
-            .expect("saved");
-        dir.write(&format!("set/{subject}.json"), drawn_labels());
+    for subject in ["set/a", "set/b"] {
+        dir.photo(subject, image::DynamicImage::from(drawn_nail()).to_luma8(), drawn_labels());
     }
     let report = dir.lunula(&["photos", "set", "--out", "out", "--channels", "--json"]).expect(0).json();
     assert!(report["left_out"].to_string().contains("channels compared: every photograph is grey and has none"));

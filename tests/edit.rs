@@ -42,9 +42,8 @@ impl Desk {
 }
 
 /// The drawn nail of a set, whose outline is doubtful and has no axis.
-fn doubtful(dir: &Dir, name: &str) {
-    drawn_nail().save(dir.place(&format!("{name}.png"))).expect("a picture");
-    dir.write(&format!("{name}.json"), labelme([160, 140], &[("nail?", "polygon", drawn_outline())]));
+pub(crate) fn doubtful(dir: &Dir, name: &str) {
+    dir.photo(name, drawn_nail(), labelme([160, 140], &[("nail?", "polygon", drawn_outline())]));
 }
 
 fn labels(dir: &Dir, name: &str) -> Vec<String> {
@@ -269,8 +268,7 @@ fn sixty_nails_on_one_photograph_are_gone_through_one_by_one() {
         let moved = drawn_outline().iter().map(|p| [p[0] + f64::from(x), p[1] + f64::from(y)]).collect();
         shapes.push(("nail?", "polygon", moved));
     }
-    picture.save(dir.place("set/hands.png")).expect("a picture");
-    dir.write("set/hands.json", labelme([1600, 840], &shapes));
+    dir.photo("set/hands", picture, labelme([1600, 840], &shapes));
     let desk = Desk::at(&dir.path("set"));
     assert_eq!(desk.sees()["nail"]["of"], 60);
     desk.keys(&["accept"; 60]);

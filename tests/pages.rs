@@ -2,19 +2,17 @@
 
 use serde_json::{Value, json};
 
+use crate::edit::doubtful;
 use crate::util::browser::{Browser, ENTER, ESCAPE, RIGHT, SPACE, TAB};
 use crate::util::page::{ends, interrupts, until};
-use crate::util::{Dir, Json, drawn_nail, drawn_outline, labelme};
+use crate::util::{Dir, Json};
 
 /// WCAG 2.2, 2.5.8: the least side of whatever is clicked, CSS pixels.
 const LEAST_PX: f64 = 24.0;
 
 /// A set of doubtful nails: one with a plain name, one whose name is a page's worst.
 fn doubtful_set(dir: &Dir) {
-    for name in ["a", "b <img src=x onerror=alert(1)>"] {
-        drawn_nail().save(dir.place(&format!("set/{name}.png"))).expect("a picture");
-        dir.write(&format!("set/{name}.json"), labelme([160, 140], &[("nail?", "polygon", drawn_outline())]));
-    }
+    ["set/a", "set/b <img src=x onerror=alert(1)>"].iter().for_each(|name| doubtful(dir, name));
 }
 
 #[test]

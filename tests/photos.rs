@@ -1,6 +1,7 @@
 //! `lunula photos` from end to end: what it promises on sets as they should be.
 
-use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, small_set};
+use crate::photos_extremes::save_turned;
+use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, number, small_set};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{PhotoOptions, write};
 
@@ -50,10 +51,8 @@ fn maps_of_sixteen_subjects_equal_the_exact_ones() {
             (&exact["file"], &"true".into(), &"annotated".into())
         );
         for column in ["center_x_px", "center_y_px", "length_px", "width_px", "axis_deg"] {
-            let number =
-                |row: &std::collections::BTreeMap<String, String>| row[column].parse::<f64>().expect("a number");
             // The table is rounded to a thousandth.
-            assert!((number(made) - number(exact)).abs() <= 2e-3, "{column} of {}", made["file"]);
+            assert!((number(made, column) - number(exact, column)).abs() <= 2e-3, "{column} of {}", made["file"]);
         }
     }
 }
@@ -124,7 +123,6 @@ fn a_flat_folder_is_one_pose_named_after_it() {
         dir.nail(&format!("nominal/{subject}"));
     }
     dir.lunula(&["photos", "nominal", "--out", "out"]).expect(0);
-    let names: Vec<String> = dir.bytes_of("out").into_keys().collect();
     for name in [
         "normalized/nominal/a.png",
         "maps/nominal-mean.npy",
@@ -132,7 +130,7 @@ fn a_flat_folder_is_one_pose_named_after_it() {
         "figures/nominal-sd.png",
         "report.html",
     ] {
-        assert!(names.iter().any(|n| n == name), "{name} in {names:?}");
+        assert!(dir.path("out").join(name).is_file(), "{name} in {:?}", dir.names_of("out"));
     }
 }
 
@@ -162,7 +160,6 @@ fn several_nails_of_a_photograph_are_one_subject() {
         let mut both = image::RgbImage::new(320, 140);
         image::imageops::replace(&mut both, &nail, 0, 0);
         image::imageops::replace(&mut both, &nail, 160, 0);
-        both.save(dir.place(&format!("set/{subject}.png"))).expect("a picture");
         let shifted = |points: Vec<[f64; 2]>| points.into_iter().map(|[x, y]| [x + 160.0, y]).collect::<Vec<_>>();
         let shapes = [
             ("axis", "line", shifted(drawn_axis())),
@@ -171,7 +168,7 @@ fn several_nails_of_a_photograph_are_one_subject() {
             ("axis", "line", drawn_axis()),
             ("ring", "polygon", vec![[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]]),
         ];
-        dir.write(&format!("set/{subject}.json"), labelme([320, 140], &shapes));
+        dir.photo(&format!("set/{subject}"), both, labelme([320, 140], &shapes));
     };
     two("a");
     two("b");
@@ -196,33 +193,20 @@ fn a_mask_s_region_is_a_nail_and_distal_settles_its_axis() {
     mask.save(dir.place("masks/a.png")).expect("a mask");
     dir.lunula(&["photos", "set", "--masks", "masks", "--distal", "up", "--out", "out"]).expect(0);
     let rows = dir.table("out/nails.csv");
-    let number = |column: &str| rows[0][column].parse::<f64>().expect("a number");
+    let of = |column: &str| number(&rows[0], column);
     assert_eq!(rows[0]["outline"], "mask");
-    assert!(number("axis_deg").abs() <= 1.0, "{}", number("axis_deg"));
+    assert!(of("axis_deg").abs() <= 1.0, "{}", of("axis_deg"));
     // Pixels whose centres are inside: the region's border is within half a pixel of the curve.
-    assert!((number("length_px") - 80.0).abs() <= 1.5 && (number("width_px") - 60.0).abs() <= 1.5);
+    assert!((of("length_px") - 80.0).abs() <= 1.5 && (of("width_px") - 60.0).abs() <= 1.5);
     dir.lunula(&["photos", "set", "--masks", "masks", "--distal", "down", "--out", "out"]).expect(0);
-    assert!(dir.table("out/nails.csv")[0]["axis_deg"].parse::<f64>().expect("a number").abs() >= 179.0);
+    assert!(number(&dir.table("out/nails.csv")[0], "axis_deg").abs() >= 179.0);
 }
 
 #[test]
 fn exif_orientation_is_applied_once_and_annotations_follow() {
     let dir = Dir::new();
     // Stored lying on its side, EXIF orientation 6 (turn clockwise to view).
-    let stored = image::imageops::rotate270(&drawn_nail());
-    let tiff = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
-    let save = |name: &str| {
-        let mut encoder = image::codecs::png::PngEncoder::new(std::fs::File::create(dir.place(name)).expect("a file"));
-        image::ImageEncoder::set_exif_metadata(&mut encoder, tiff.to_vec()).expect("PNG holds EXIF");
-        image::ImageEncoder::write_image(
-            encoder,
-            &stored,
-            stored.width(),
-            stored.height(),
-            image::ExtendedColorType::Rgb8,
-        )
-        .expect("a picture");
-    };
+    let save = |name: &str| save_turned(&image::imageops::rotate270(&drawn_nail()), 6, dir.place(name));
     save("set/upright.png");
     dir.write("set/upright.json", drawn_labels());
     save("set/stored.png");
@@ -275,9 +259,8 @@ fn what_the_photograph_does_not_show_is_missing_not_zero() {
     // The nail's right third is cut off by the picture's border.
     for subject in ["a", "b"] {
         let cut = image::imageops::crop_imm(&drawn_nail(), 0, 0, 90, 140).to_image();
-        cut.save(dir.place(&format!("set/{subject}.png"))).expect("a picture");
         let shapes = [("nail", "polygon", drawn_outline()), ("axis", "line", drawn_axis())];
-        dir.write(&format!("set/{subject}.json"), labelme([90, 140], &shapes));
+        dir.photo(&format!("set/{subject}"), cut, labelme([90, 140], &shapes));
     }
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
     let mean = dir.array("out/maps/set-mean.npy");
@@ -293,11 +276,8 @@ fn what_the_photograph_does_not_show_is_missing_not_zero() {
 fn the_channel_can_be_chosen_and_grey_needs_none() {
     let dir = Dir::new();
     dir.nail("colour/a");
-    drawn_nail().save(dir.place("grey/unused.png")).expect("a picture");
-    std::fs::remove_file(dir.path("grey/unused.png")).expect("removed");
     let green = image::GrayImage::from_fn(160, 140, |x, y| image::Luma([drawn_nail().get_pixel(x, y).0[1]]));
-    green.save(dir.place("grey/a.png")).expect("a picture");
-    dir.write("grey/a.json", drawn_labels());
+    dir.photo("grey/a", green, drawn_labels());
     dir.lunula(&["photos", "colour", "--out", "c"]).expect(0);
     let answer = dir.lunula(&["photos", "grey", "--out", "g", "--channel", "red", "--json"]).expect(0);
     assert!(dir.bytes_of("c")["maps/colour-mean.npy"] == dir.bytes_of("g")["maps/grey-mean.npy"]);
@@ -315,12 +295,10 @@ fn the_channel_can_be_chosen_and_grey_needs_none() {
 fn a_plan_says_what_would_be_left_out_and_does_nothing() {
     let dir = Dir::new();
     dir.nail("set/a");
-    let answer = dir.lunula(&["photos", "set", "--out", "out", "--plan"]).expect(0);
-    for line in
-        ["detection                          left out", "outlines from LabelMe              run       1 photograph(s)"]
-    {
-        assert!(answer.stdout.contains(line), "{line} in\n{}", answer.stdout);
-    }
+    dir.words("photos set --out out --plan")
+        .expect(0)
+        .prints("detection                          left out")
+        .prints("outlines from LabelMe              run       1 photograph(s)");
     assert!(!dir.path("out").exists());
     let plan = dir.lunula(&["photos", "set", "--out", "out", "--plan", "--json"]).expect(0).json();
     assert!(
@@ -333,8 +311,7 @@ fn a_plan_says_what_would_be_left_out_and_does_nothing() {
 #[test]
 fn the_report_needs_nothing_else() {
     let dir = Dir::new();
-    dir.nail("set/a");
-    dir.nail("set/b");
+    ["set/a", "set/b"].iter().for_each(|name| dir.nail(name));
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
     let html = dir.text("out/report.html");
     assert_eq!(html.matches("src=\"data:image/").count(), 5);
@@ -368,9 +345,6 @@ fn detected_outlines_are_kept_corrected_and_used() {
     let used = dir.table("used/nails.csv");
     assert!(used.iter().all(|r| r["outline"] == "annotated"));
     for (detected, used) in detected.iter().zip(&used) {
-        let number = |row: &std::collections::BTreeMap<String, String>, column: &str| {
-            row[column].parse::<f64>().expect("a number")
-        };
         let moved = (number(used, "center_x_px") - number(detected, "center_x_px"))
             .hypot(number(used, "center_y_px") - number(detected, "center_y_px"));
         let expected = if used["file"] == "nominal/s01.png" { 2.0 } else { 0.0 };
@@ -416,11 +390,8 @@ fn a_tradeoff_over_one_subject_leaves_the_sd_out_and_says_so() {
 fn a_doubted_outline_is_not_read_as_a_nail() {
     let dir = Dir::new();
     dir.nail("set/a");
-    drawn_nail().save(dir.place("set/b.png")).expect("a picture");
-    dir.write(
-        "set/b.json",
-        labelme([160, 140], &[("nail?", "polygon", drawn_outline()), ("axis", "line", drawn_axis())]),
-    );
+    let shapes = [("nail?", "polygon", drawn_outline()), ("axis", "line", drawn_axis())];
+    dir.photo("set/b", drawn_nail(), labelme([160, 140], &shapes));
     dir.lunula(&["photos", "set", "--out", "out"]).expect(1).says("no polygon labelled `nail`");
 }
 

@@ -3,6 +3,7 @@
 
 use std::process::Command;
 
+use crate::photos_extremes::save_turned;
 use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme};
 
 /// A set of three good photographs.
@@ -51,49 +52,33 @@ fn several_files_where_one_is_taken_are_answered_with_the_way_to_batches() {
     dir.lunula(&["posture", "a.mp4", "--makers", "m.toml"]).expect(2).says("'--markers'").never_says("init");
 }
 
+/// Cut files, an empty one, text, formats and samples that are not read.
 #[test]
-fn a_truncated_jpeg_is_named_not_greyed() {
-    let dir = good_set();
-    let whole = dir.place("whole.jpg");
-    drawn_nail().save(&whole).expect("a picture");
-    let bytes = std::fs::read(whole).expect("a file");
-    dir.write("set/d.jpg", &bytes[..bytes.len() * 2 / 3]);
-    dir.write("set/d.json", drawn_labels());
-    costs_only_itself(&dir, &["d.jpg", "truncated JPEG", "copy the file again"]);
-}
-
-#[test]
-fn a_text_file_called_png_is_no_picture() {
-    let dir = good_set();
-    dir.write("set/d.png", "dear diary");
-    costs_only_itself(&dir, &["d.png", "not a PNG, JPEG, TIFF or BMP"]);
-}
-
-#[test]
-fn damaged_and_empty_files_are_named() {
-    for (name, cut) in [("d.png", 200), ("d.tif", 300), ("d.bmp", 500), ("d.png", 0)] {
+fn a_file_that_is_no_picture_is_named() {
+    let folder = Dir::new();
+    let whole = |name: &str, picture: image::DynamicImage| {
+        let path = folder.place(name);
+        picture.save(&path).expect("a picture");
+        std::fs::read(path).expect("a file")
+    };
+    let cut = |name: &str, length: usize| whole(name, drawn_nail().into())[..length].to_vec();
+    let jpeg = whole("d.jpg", drawn_nail().into());
+    let float = image::Rgb32FImage::from_pixel(160, 140, image::Rgb([0.5; 3])).into();
+    for (name, bytes, words) in [
+        ("d.jpg", jpeg[..jpeg.len() * 2 / 3].to_vec(), &["truncated JPEG", "copy the file again"][..]),
+        ("d.png", b"dear diary".to_vec(), &["not a PNG, JPEG, TIFF or BMP"]),
+        ("d.png", cut("d.png", 200), &[]),
+        ("d.png", cut("d.png", 0), &[]),
+        ("d.tif", cut("d.tif", 300), &[]),
+        ("d.bmp", cut("d.bmp", 500), &[]),
+        ("d.HEIC", b"ftypheic".to_vec(), &["export it as PNG"]),
+        ("d.tiff", whole("d.tiff", float), &["8 or 16 bits"]),
+    ] {
         let dir = good_set();
-        let whole = dir.place(&format!("whole/{name}"));
-        drawn_nail().save(&whole).expect("a picture");
-        dir.write(&format!("set/{name}"), &std::fs::read(whole).expect("a file")[..cut]);
+        dir.write(&format!("set/{name}"), bytes);
         dir.write("set/d.json", drawn_labels());
-        costs_only_itself(&dir, &[name]);
+        costs_only_itself(&dir, &[&[name], words].concat());
     }
-}
-
-#[test]
-fn a_format_that_is_not_read_is_said() {
-    let dir = good_set();
-    dir.write("set/d.HEIC", "ftypheic");
-    costs_only_itself(&dir, &["d.HEIC", "export it as PNG"]);
-}
-
-#[test]
-fn float_samples_are_refused() {
-    let dir = good_set();
-    image::Rgb32FImage::from_pixel(160, 140, image::Rgb([0.5; 3])).save(dir.place("set/d.tiff")).expect("a picture");
-    dir.write("set/d.json", drawn_labels());
-    costs_only_itself(&dir, &["d.tiff", "8 or 16 bits"]);
 }
 
 #[test]
@@ -131,22 +116,23 @@ fn outlines_that_are_none_are_named_with_their_shape() {
     ];
     for (shapes, words) in cases {
         let dir = good_set();
-        drawn_nail().save(dir.place("set/d.png")).expect("a picture");
-        dir.write("set/d.json", labelme([160, 140], &shapes));
+        dir.photo("set/d", drawn_nail(), labelme([160, 140], &shapes));
         costs_only_itself(&dir, &["d.png", words]);
     }
+    let dir = good_set();
+    dir.photo("set/d", drawn_nail(), "{\n \"shapes\": [\n".to_owned());
+    costs_only_itself(&dir, &["set/d.json", "line 3"]);
 }
 
 #[test]
 fn one_bad_outline_of_a_photograph_leaves_its_others() {
     let dir = Dir::new();
-    drawn_nail().save(dir.place("set/a.png")).expect("a picture");
     let shapes = [
         ("nail", "polygon", vec![[1.0, 1.0], [9.0, 9.0]]),
         ("nail", "polygon", drawn_outline()),
         ("axis", "line", drawn_axis()),
     ];
-    dir.write("set/a.json", labelme([160, 140], &shapes));
+    dir.photo("set/a", drawn_nail(), labelme([160, 140], &shapes));
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
     let rows = dir.table("out/nails.csv");
     assert_eq!(rows.iter().map(|r| r["used"].as_str()).collect::<Vec<_>>(), ["false", "true"]);
@@ -157,8 +143,7 @@ fn one_bad_outline_of_a_photograph_leaves_its_others() {
 #[test]
 fn an_annotation_or_mask_of_another_picture_is_refused() {
     let dir = good_set();
-    drawn_nail().save(dir.place("set/d.png")).expect("a picture");
-    dir.write("set/d.json", labelme([1600, 1400], &[("nail", "polygon", drawn_outline())]));
+    dir.photo("set/d", drawn_nail(), labelme([1600, 1400], &[("nail", "polygon", drawn_outline())]));
     costs_only_itself(&dir, &["d.json", "[1600, 1400] px", "[160, 140] px"]);
     std::fs::remove_file(dir.path("set/d.json")).expect("removed");
     image::GrayImage::from_pixel(80, 70, image::Luma([255])).save(dir.place("masks/d.png")).expect("a mask");
@@ -167,23 +152,9 @@ fn an_annotation_or_mask_of_another_picture_is_refused() {
 }
 
 #[test]
-fn a_broken_annotation_is_named_with_its_line() {
-    let dir = good_set();
-    drawn_nail().save(dir.place("set/d.png")).expect("a picture");
-    dir.write("set/d.json", "{\n \"shapes\": [\n");
-    costs_only_itself(&dir, &["set/d.json", "line 3"]);
-}
-
-#[test]
 fn a_turn_that_the_size_does_not_tell_is_refused_until_it_is_said() {
     let dir = good_set();
-    let upside_down = image::imageops::rotate180(&drawn_nail());
-    let tiff = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x03\0\0\0\0\0\0\0";
-    let mut encoder =
-        image::codecs::png::PngEncoder::new(std::fs::File::create(dir.place("set/d.png")).expect("a file"));
-    image::ImageEncoder::set_exif_metadata(&mut encoder, tiff.to_vec()).expect("PNG holds EXIF");
-    image::ImageEncoder::write_image(encoder, &upside_down, 160, 140, image::ExtendedColorType::Rgb8)
-        .expect("a picture");
+    save_turned(&image::imageops::rotate180(&drawn_nail()), 3, dir.place("set/d.png"));
     dir.write("set/d.json", drawn_labels());
     costs_only_itself(&dir, &["d.png", "--annotations upright"]);
     dir.lunula(&["photos", "set", "--out", "out", "--annotations", "upright"]).expect(0);
@@ -223,18 +194,15 @@ fn photographs_that_may_be_of_another_pose_are_named() {
     let dir = Dir::new();
     let mut rows = Vec::new();
     for (k, (pose, subject)) in ["p", "q"].iter().flat_map(|pose| ["a", "b", "c"].map(|who| (*pose, who))).enumerate() {
-        shaded(1.0, k as u32).save(dir.place(&format!("set/{pose}/{subject}.png"))).expect("a picture");
         // Each nail was drawn by hand: no two are alike.
         let moved = |points: Vec<[f64; 2]>| points.iter().map(|[x, y]| [x + 0.05 * k as f64, *y]).collect::<Vec<_>>();
         let shapes = [("nail", "polygon", moved(drawn_outline())), ("axis", "line", drawn_axis())];
-        dir.write(&format!("set/{pose}/{subject}.json"), labelme([160, 140], &shapes));
+        dir.photo(&format!("set/{pose}/{subject}"), shaded(1.0, k as u32), labelme([160, 140], &shapes));
         rows.push([format!("{pose}/{subject}.png"), subject.to_owned(), pose.to_owned()]);
     }
     let of = |rows: &[[String; 3]]| {
-        dir.write(
-            "set/photos.csv",
-            format!("file,subject,pose\n{}\n", rows.iter().map(|row| row.join(",")).collect::<Vec<_>>().join("\n")),
-        );
+        let rows: String = rows.iter().map(|row| row.join(",") + "\n").collect();
+        dir.write("set/photos.csv", format!("file,subject,pose\n{rows}"));
         dir.lunula(&["photos", "set", "--out", "out"]).expect(0).stderr
     };
     let quiet = of(&rows);
@@ -332,8 +300,7 @@ fn a_column_that_is_nearly_one_of_the_manifest_s_is_not_passed_over() {
 #[test]
 fn colour_and_grey_in_a_pose_are_warned_of() {
     let dir = good_set();
-    image::DynamicImage::from(drawn_nail()).to_luma8().save(dir.place("set/d.png")).expect("a picture");
-    dir.write("set/d.json", drawn_labels());
+    dir.photo("set/d", image::DynamicImage::from(drawn_nail()).to_luma8(), drawn_labels());
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0).says("pose `set` mixes 3 colour and 1 grey photograph(s)");
     // Made in parts as well.
     std::fs::create_dir_all(dir.path("grey/set")).expect("a folder");

@@ -210,8 +210,7 @@ fn twelve_bits_in_sixteen_are_noted_and_mended() {
     let dir = Dir::new();
     for (set, white) in [("twelve", 4095), ("sixteen", 65_535)] {
         for subject in ["a", "b"] {
-            few_bits(white).save(dir.place(&format!("{set}/p/{subject}.png"))).expect("a picture");
-            dir.write(&format!("{set}/p/{subject}.json"), crate::util::drawn_labels());
+            dir.photo(&format!("{set}/p/{subject}"), few_bits(white), crate::util::drawn_labels());
         }
     }
     let answer = dir.lunula(&["photos", "twelve", "--out", "dark"]).expect(0);
@@ -242,10 +241,9 @@ fn an_outline_mostly_outside_of_the_picture_is_left_out() {
     let dir = Dir::new();
     dir.nail("set/a");
     for (subject, [dx, dy]) in [("b", [85.0, 0.0]), ("c", [101.0, 0.0]), ("d", [69.9, -80.0])] {
-        drawn_nail().save(dir.place(&format!("set/{subject}.png"))).expect("a picture");
         let moved = |points: Vec<[f64; 2]>| points.into_iter().map(|[x, y]| [x + dx, y + dy]).collect::<Vec<_>>();
         let shapes = [("nail", "polygon", moved(drawn_outline())), ("axis", "line", moved(drawn_axis()))];
-        dir.write(&format!("set/{subject}.json"), labelme([160, 140], &shapes));
+        dir.photo(&format!("set/{subject}"), drawn_nail(), labelme([160, 140], &shapes));
     }
     let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
     for (subject, words) in [("b", "59 % of its box lies outside"), ("c", "86 % of its box"), ("d", "75 % of its box")]
@@ -284,10 +282,9 @@ fn giant_sizes_cost_only_their_own_photograph() {
     let dir = Dir::new();
     dir.nail("set/a");
     for (subject, far) in [("b", 1e10), ("c", -1e300), ("d", 5000.0)] {
-        drawn_nail().save(dir.place(&format!("set/{subject}.png"))).expect("a picture");
         let mut points = drawn_outline();
         points[7][0] = far;
-        dir.write(&format!("set/{subject}.json"), labelme([160, 140], &[("nail", "polygon", points)]));
+        dir.photo(&format!("set/{subject}"), drawn_nail(), labelme([160, 140], &[("nail", "polygon", points)]));
     }
     GrayImage::new(1200, 1000).save(dir.place("set/e.png")).expect("a picture");
     let answer = dir.lunula(&["photos", "set", "--out", "out", "--max-megapixels", "1"]).expect(1);
