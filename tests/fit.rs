@@ -14,6 +14,15 @@ fn parameter(dir: &Dir, file: &str, name: &str) -> f64 {
     value.expect("a parameter of the file").parse().expect("a number")
 }
 
+/// That these parameters are found again, relative errors of at most `near`.
+#[track_caller]
+fn found_again(dir: &Dir, file: &str, near: f64, parameters: &[(&str, f64)]) {
+    for (name, truth) in parameters {
+        let found = parameter(dir, file, name);
+        assert!((found / truth - 1.0).abs() <= near, "{file}: {name}: {found} and not {truth}");
+    }
+}
+
 /// A response to steps on both places, with the nail's values.
 const STEPS: &str = "--pf1 step:6000@0..2 --pf2 step:4000@0.5..2.5 --every 0.02 --rtol 1e-9 --with-loads --no-figures";
 
@@ -42,17 +51,9 @@ fn what_made_a_recording_is_found_again() {
     let written = dir.parsed("f.json");
     assert_eq!(written["free"], report["free"]);
     assert_eq!(report["converged"], true);
-    for (name, truth) in [
-        ("k_C1_N_per_m", 7e4),
-        ("k_C2_N_per_m", 7e4),
-        ("b_V_N_s_per_m", 250.0),
-        ("V0_1_V", 0.5),
-        ("V1_1_V", 3.0),
-        ("V1_2_V", 2.0),
-    ] {
-        let found = parameter(&dir, "f.toml", name);
-        assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
-    }
+    let vessels = [("k_C1_N_per_m", 7e4), ("k_C2_N_per_m", 7e4), ("b_V_N_s_per_m", 250.0)];
+    found_again(&dir, "f.toml", NEAR, &vessels);
+    found_again(&dir, "f.toml", NEAR, &[("V0_1_V", 0.5), ("V1_1_V", 3.0), ("V1_2_V", 2.0)]);
     assert!(report["r2"].number() > 0.999_999);
     assert!(report["correlations"].list().len() == 6);
     // The fitted parameters are a file for simulate.
@@ -79,10 +80,8 @@ fn steps_that_jump_at_their_rows_are_found_exactly() {
     let dir = Dir::new();
     run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=1500 --set b_V_N_s_per_m=150 --out r.csv")).expect(0);
     run(&dir, "fit", "r.csv --free k_V,b_V,b_C --between held --unloaded-before --out f.json").expect(0);
-    for (name, truth) in [("k_V_N_per_m", 1500.0), ("b_V_N_s_per_m", 150.0), ("b_C1_N_s_per_m", 1e4), ("V1_2_V", 1.0)] {
-        let found = parameter(&dir, "f.toml", name);
-        assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
-    }
+    let truth = [("k_V_N_per_m", 1500.0), ("b_V_N_s_per_m", 150.0), ("b_C1_N_s_per_m", 1e4), ("V1_2_V", 1.0)];
+    found_again(&dir, "f.toml", NEAR, &truth);
 }
 
 #[test]
@@ -93,10 +92,8 @@ fn a_static_recording_gives_offset_and_scaling() {
     let nail = "--set V0_1_V=2.5 --set V1_1_V=4 --set V0_2_V=-1 --set V1_2_V=0.5";
     run(&dir, "simulate", &format!("--static 0..10000/250 {nail} --out s.csv --no-figures")).expect(0);
     run(&dir, "fit", "s.csv --free none --out f.json").expect(0);
-    for (name, truth) in [("V0_1_V", 2.5), ("V1_1_V", 4.0), ("V0_2_V", -1.0), ("V1_2_V", 0.5)] {
-        let found = parameter(&dir, "f.toml", name);
-        assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
-    }
+    let truth = [("V0_1_V", 2.5), ("V1_1_V", 4.0), ("V0_2_V", -1.0), ("V1_2_V", 0.5)];
+    found_again(&dir, "f.toml", NEAR, &truth);
 }
 
 #[test]
@@ -111,14 +108,13 @@ fn every_subject_has_photodiodes_of_its_own() {
     let report = run(&dir, "fit", "a.csv b.csv --subject anna,ben --free k_V --out f.json --json").expect(0).json();
     assert_eq!(report["photodiodes"].list().len(), 4);
     for (file, scaling) in [("f-anna.toml", 2.0), ("f-ben.toml", 5.0)] {
-        assert!((parameter(&dir, file, "V1_1_V") / scaling - 1.0).abs() <= NEAR, "{file}");
-        assert!((parameter(&dir, file, "k_V_N_per_m") / 1e3 - 1.0).abs() <= NEAR, "{file}");
+        found_again(&dir, file, NEAR, &[("V1_1_V", scaling), ("k_V_N_per_m", 1e3)]);
     }
     // Recordings of the same name have files of their own.
     dir.write("day/a.csv", std::fs::read(dir.path("b.csv")).unwrap());
     run(&dir, "fit", "a.csv day/a.csv --calibrate recording --free none --out g.json").expect(0);
     for (file, scaling) in [("g-a.toml", 2.0), ("g-a-2.toml", 5.0)] {
-        assert!((parameter(&dir, file, "V1_1_V") / scaling - 1.0).abs() <= NEAR, "{file}");
+        found_again(&dir, file, NEAR, &[("V1_1_V", scaling)]);
     }
 }
 
@@ -138,7 +134,7 @@ fn a_log_of_forces_and_photodiodes_of_other_names_is_read() {
     dir.write("log.csv", log);
     let options = "log.csv --force Fz_N --area-cm2 2 --load distal --photodiode P3=2 --free none --out f.json --json";
     let report = run(&dir, "fit", options).expect(0).json();
-    assert!((parameter(&dir, "f.toml", "V1_2_V") / 3.0 - 1.0).abs() <= NEAR);
+    found_again(&dir, "f.toml", NEAR, &[("V1_2_V", 3.0)]);
     assert_eq!((report["recordings"][0]["missing"].as_u64(), report["values"].as_u64()), (Some(1), Some(19)));
 }
 
@@ -199,7 +195,7 @@ fn voltages_may_be_missing_but_not_be_no_numbers() {
     let jumps = "--between held --unloaded-before";
     let report = run(&dir, "fit", &format!("empty.csv --free k_V {jumps} --out f.json --json")).expect(0).json();
     assert_eq!((report["recordings"][0]["missing"].as_u64(), report["values"].as_u64()), (Some(67), Some(335)));
-    assert!((parameter(&dir, "f.toml", "k_V_N_per_m") / 1500.0 - 1.0).abs() <= NEAR);
+    found_again(&dir, "f.toml", NEAR, &[("k_V_N_per_m", 1500.0)]);
     let empty = dir.table("f-fitted.csv").iter().filter(|row| row["measured_V"].is_empty()).count();
     assert_eq!(empty, 67);
     for (cell, words) in [("NaN", "is no finite number"), ("inf", "is no finite number"), ("off", "is no number")] {

@@ -31,8 +31,8 @@ fn recording(seconds: f64) -> String {
     text
 }
 
-/// `m.json` of forces from P1, `sw.toml`.
-fn desk() -> Dir {
+/// `m.json` of forces from P1, exact, and `sw.toml`.
+pub(crate) fn desk() -> Dir {
     let dir = Dir::new();
     let mut text = "time_s,P1,Fz_N\n".to_owned();
     (0..200).for_each(|k| text.push_str(&row(0.01 * f64::from(k), 0.02 * f64::from(k) - 1.0)));

@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::util::Dir;
+use crate::live::desk;
 
 /// A sensor's rows from `from_s` on: P1 is 1 V and half a volt per newton.
 fn sensor(from_s: f64, step_s: f64, rows: u32, pressing_n: impl Fn(f64) -> f64) -> String {
@@ -16,19 +16,6 @@ fn sensor(from_s: f64, step_s: f64, rows: u32, pressing_n: impl Fn(f64) -> f64) 
         let _ = writeln!(text, "{t_s:.4},{:.5}", 1.0 + 0.5 * pressing_n(t_s));
     }
     text
-}
-
-/// `m.json` of a normal force from P1, exact.
-fn desk() -> Dir {
-    let dir = Dir::new();
-    let mut text = "time_s,P1,Fz_N\n".to_owned();
-    (0..200).for_each(|k| {
-        let pressing_n = 0.02 * f64::from(k) - 1.0;
-        let _ = writeln!(text, "{:.2},{:.4},{:.4}", 0.01 * f64::from(k), 1.0 + 0.5 * pressing_n, -pressing_n);
-    });
-    dir.write("train.csv", text);
-    dir.train("train.csv", "Fz_N", "m.json", &["-q"]).expect(0);
-    dir
 }
 
 /// A press of a newton from `from_s` to `to_s`.

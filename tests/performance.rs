@@ -218,39 +218,42 @@ fn one_operator_and_one_method_are_enough() {
     answer.says("virtual and pendant: no operator did the same trial with both");
 }
 
+/// The answer to a table of trials.
+#[track_caller]
+fn judged(dir: &Dir, trials: String) -> Answer {
+    dir.write("trials.csv", trials);
+    run(dir, &format!("trials.csv {COURSE} --out o --json")).expect(0)
+}
+
 #[test]
 fn slips_of_names_and_units_are_warned_of() {
     let dir = Dir::new();
+    let said = |text: String| judged(&dir, text);
     let rows = [("A", "pendant", 1, 2.0), ("a", "virtual", 1, 1.0), ("A", "Virtual", 2, 1.0)];
-    dir.write("trials.csv", table(&rows));
-    let answer = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
-    answer.says("operators `A` and `a` differ in case").says("methods `Virtual` and `virtual` differ in case");
-    dir.write("trials.csv", table(&rows.map(|(_, method, trial, s)| ("A", method, trial, 1000.0 * s))));
-    run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).says("is time_s in ms?");
+    said(table(&rows))
+        .says("operators `A` and `a` differ in case")
+        .says("methods `Virtual` and `virtual` differ in case");
+    said(table(&rows.map(|(_, method, trial, s)| ("A", method, trial, 1000.0 * s)))).says("is time_s in ms?");
     // One of two operators in ms, and a log that was copied under another name.
     let of = |who: &'static str, unit: f64| [1, 2, 3].map(|k| (who, "pendant", k, unit * (2.0 - 0.3 * f64::from(k))));
-    dir.write("trials.csv", table(&[of("A", 1.0), of("B", 900.0), of("C", 1.0)].concat()));
-    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).stderr;
-    assert!(said.contains("half of the decisions of B took ") && !said.contains("decisions of A"), "{said}");
-    assert!(said.contains("A, C have the same times in all 3 trials, and count apart"), "{said}");
+    said(table(&[of("A", 1.0), of("B", 900.0), of("C", 1.0)].concat()))
+        .says("half of the decisions of B took ")
+        .never_says("decisions of A")
+        .says("A, C have the same times in all 3 trials, and count apart");
     // A method's log that was copied under another's name, a clock that is never reset, a speed in mm/s.
     let method = |method: &'static str| [1, 2, 3].map(|k| ("A", method, k, 2.0 - 0.3 * f64::from(k)));
-    dir.write("trials.csv", table(&[method("pendant"), method("virtual")].concat()));
-    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
-    said.says("pendant, virtual have the same times in all 3 trials");
+    said(table(&[method("pendant"), method("virtual")].concat()))
+        .says("pendant, virtual have the same times in all 3 trials");
     let counted_on = |k: u32| ("A", "pendant", k, 3.0 * f64::from(k) + (f64::from(k) - 1.0) * SHORTEST_S / 27.0);
-    dir.write("trials.csv", table(&[&(1..5).map(counted_on).collect::<Vec<_>>()[..], &of("B", 1.0)].concat()));
-    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
-    said.says("each trial of A with pendant took a whole drive longer than the one before");
+    said(table(&[&(1..5).map(counted_on).collect::<Vec<_>>()[..], &of("B", 1.0)].concat()))
+        .says("each trial of A with pendant took a whole drive longer than the one before");
     let on = [1, 2, 3].map(|k| ("A", "virtual", k + 3, 1.6 - 0.3 * f64::from(k)));
-    dir.write("trials.csv", table(&[of("A", 1.0), on].concat()));
-    let said = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
-    said.says("the trials of A with virtual begin at 4, where those with another method end: are they counted on?");
-    dir.write("trials.csv", by_hand());
+    said(table(&[of("A", 1.0), on].concat()))
+        .says("the trials of A with virtual begin at 4, where those with another method end: are they counted on?");
+    said(by_hand()).never_says("warning");
     run(&dir, "trials.csv --path-m 1.42 --speed-mps 25 --decisions 27 --out o")
         .expect(0)
         .says("driving alone takes 0.057 s of 192 s in the median");
-    run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).never_says("warning");
 }
 
 /// Five operators who differ by a tenth or so, six trials by two methods.
@@ -271,12 +274,8 @@ fn five(slip: impl Fn(&str, &str, u32, f64) -> f64) -> String {
 #[test]
 fn a_slip_in_one_row_and_trials_that_were_stopped_are_warned_of() {
     let dir = Dir::new();
-    let said = |text: String| {
-        dir.write("trials.csv", text);
-        run(&dir, &format!("trials.csv {COURSE} --out o --json")).expect(0)
-    };
-    let plain = said(five(|_, _, _, usual| usual));
-    assert!(!plain.stderr.contains("warning"), "{}", plain.stderr);
+    let said = |text: String| judged(&dir, text);
+    let plain = said(five(|_, _, _, usual| usual)).never_says("warning");
     let statement = &plain.json()["comparisons"][0]["initially"];
     assert!(statement["holds"] == true && statement["ratio_se"].number() < 0.05, "{statement}");
     let slip = |operator: &str, method: &str, trial: u32, usual: f64| {

@@ -7,7 +7,7 @@ use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{LightKind, write};
 
 use crate::util::desk::Desk;
-use crate::util::{Dir, drawn_axis, drawn_nail, drawn_outline, labelme, small_set};
+use crate::util::{Dir, drawn_axis, drawn_nail, drawn_outline, labelme, number, small_set};
 
 /// Eight close-ups, annotated; of all of them the picture is sure of its axis.
 fn close_ups() -> Dir {
@@ -18,9 +18,9 @@ fn close_ups() -> Dir {
     dir
 }
 
-/// Changes every LabelMe file of the close-ups.
-fn redraw(dir: &Dir, change: impl Fn(&mut LabelMe)) {
-    for subject in 1..=8 {
+/// Changes LabelMe files of the close-ups.
+fn redraw(dir: &Dir, subjects: std::ops::RangeInclusive<usize>, change: impl Fn(&mut LabelMe)) {
+    for subject in subjects {
         let path = dir.path(&format!("scene/photos/nominal/s0{subject}.json"));
         let mut file = LabelMe::read(&path).expect("LabelMe");
         change(&mut file);
@@ -40,7 +40,7 @@ fn a_reversed_axis_is_doubted_unless_it_is_said_twice() {
     let dir = close_ups();
     dir.lunula(&["photos", "scene/photos", "--out", "out"]).expect(0);
     assert_eq!(left_out(&dir), (vec![], 8));
-    redraw(&dir, |file| file.shapes.iter_mut().filter(|s| s.label == "axis").for_each(|s| s.points.reverse()));
+    redraw(&dir, 1..=8, |file| file.shapes.iter_mut().filter(|s| s.label == "axis").for_each(|s| s.points.reverse()));
     let answer = dir.lunula(&["photos", "scene/photos", "--out", "out"]);
     assert_eq!(answer.code, 1, "{}", answer.stderr);
     let (reasons, used) = left_out(&dir);
@@ -53,24 +53,17 @@ fn a_reversed_axis_is_doubted_unless_it_is_said_twice() {
     assert_eq!(left_out(&dir).1, 8);
 }
 
-/// The shapes of one close-up's file, moved along and across the finger, in pixels.
-fn shifted(dir: &Dir, subject: usize, by: [f64; 2]) {
-    let path = dir.path(&format!("scene/photos/nominal/s0{subject}.json"));
-    let mut file = LabelMe::read(&path).expect("LabelMe");
-    let all = file.shapes.iter_mut().flat_map(|shape| &mut shape.points);
-    all.for_each(|point| (0..2).for_each(|k| point[k] += by[k]));
-    file.write(&path).expect("written");
-}
-
 #[test]
 fn outlines_drawn_beside_the_nail_are_warned_of_where_that_is_requested() {
     let dir = close_ups();
-    let length_px = |row: usize| dir.table("out/nails.csv")[row]["length_px"].parse::<f64>().expect("a length");
     let job = ["photos", "scene/photos", "--out", "out"];
     let check = [&job[..], &["--check-outlines"]].concat();
     dir.lunula(&check).expect(0).never_says("by the network");
     // A fifth of the length too far distal, which is up in these.
-    shifted(&dir, 3, [0.0, -0.2 * length_px(2)]);
+    let length_px = number(&dir.table("out/nails.csv")[2], "length_px");
+    redraw(&dir, 3..=3, |file| {
+        file.shapes.iter_mut().flat_map(|shape| &mut shape.points).for_each(|point| point[1] -= 0.2 * length_px);
+    });
     dir.lunula(&job).expect(0).never_says("by the network");
     let plan = [&job[..], &["--plan"]].concat();
     dir.lunula(&plan).expect(0).prints("--check-outlines looks at them");
@@ -90,7 +83,7 @@ fn outlines_drawn_beside_the_nail_are_warned_of_where_that_is_requested() {
 #[test]
 fn distal_against_the_picture_is_doubted() {
     let dir = close_ups();
-    redraw(&dir, |file| file.shapes.retain(|s| s.label != "axis"));
+    redraw(&dir, 1..=8, |file| file.shapes.retain(|s| s.label != "axis"));
     dir.lunula(&["photos", "scene/photos", "--out", "out", "--distal", "up"]).expect(0);
     assert_eq!(left_out(&dir), (vec![], 8));
     dir.lunula(&["photos", "scene/photos", "--out", "out", "--distal", "down"]).expect(1);
@@ -118,7 +111,9 @@ fn a_picture_turned_after_it_was_drawn_on_is_doubted() {
 #[test]
 fn coordinates_that_a_program_wrote_as_row_and_column_are_doubted() {
     let dir = close_ups();
-    redraw(&dir, |file| file.shapes.iter_mut().flat_map(|shape| &mut shape.points).for_each(|point| point.reverse()));
+    redraw(&dir, 1..=8, |file| {
+        file.shapes.iter_mut().flat_map(|shape| &mut shape.points).for_each(|point| point.reverse());
+    });
     let answer = dir.lunula(&["photos", "scene/photos", "--out", "out"]);
     assert!(matches!(answer.code, 1 | 2), "{}", answer.stderr);
     let doubted = answer.stderr.lines().filter(|line| line.contains("with x and y exchanged")).count();

@@ -1,6 +1,6 @@
 //! `lunula analyse` and `lunula prune` from end to end, against values that are known.
 
-use crate::util::sensor::{Recording, near, numbers, offset, slope, volt};
+use crate::util::sensor::{Recording, near, numbers, offset, slopes, volt};
 use crate::util::{Dir, Json};
 use serde_json::Value;
 
@@ -67,7 +67,7 @@ fn the_model_is_printed_as_in_the_thesis() {
     dir.train("a.csv", "force", "m.json", &["-q"]).expect(0);
     let printed = &dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json()["printed"];
     for (t, target) in ["Fx_N", "Fy_N", "Fz_N"].iter().enumerate() {
-        near(&numbers(&printed["jacobian"][target]), &(0..8).map(|k| slope(t, k)).collect::<Vec<_>>(), EXACT);
+        near(&numbers(&printed["jacobian"][target]), &slopes(t), EXACT);
         near(&by_name(&printed["offset"], &[target]), &[offset(t)], 1e-13);
     }
     assert_eq!(printed["terms"].list().len(), 8);

@@ -1,7 +1,7 @@
 //! `lunula train` on rows that do not determine the model: which photodiodes are at fault is reported, and what was
 //! asked for is done.
 
-use crate::util::sensor::{Recording, near, numbers, slope};
+use crate::util::sensor::{Recording, near, numbers, slope, slopes};
 use crate::util::{Dir, Json};
 use serde_json::Value;
 
@@ -84,7 +84,7 @@ fn one_row_more_than_terms_leaves_nothing_to_judge_them_by() {
     let dir = dir_with(&Recording::of(0..9));
     let (jacobian, fit) = fitted(&dir, "refuse");
     for (t, row) in jacobian.iter().enumerate() {
-        near(row, &(0..8).map(|k| slope(t, k)).collect::<Vec<_>>(), 1e-12);
+        near(row, &slopes(t), 1e-12);
     }
     assert!(fit["warnings"].to_string().contains("9 rows determine the terms exactly"), "{fit}");
     assert_eq!(fit["residual_sd"], serde_json::json!([null, null, null]));
@@ -145,11 +145,7 @@ fn a_saturated_photodiode_is_reported_and_rows_that_align_marks_are_left_out() {
     let answer = dir.train("a.csv", "force", "m.json", &["--json"]).expect(0).never_says("saturated?");
     let report = answer.json();
     assert_eq!((&report["data"][0]["faults"], &report["data"][0]["used"]), (&count.into(), &(120 - count).into()));
-    near(
-        &numbers(&dir.parsed("m.json")["model"]["jacobian"][0]),
-        &(0..8).map(|k| slope(0, k)).collect::<Vec<_>>(),
-        EXACT,
-    );
+    near(&numbers(&dir.parsed("m.json")["model"]["jacobian"][0]), &slopes(0), EXACT);
     let kept = dir.train("a.csv", "force", "n.json", &["--keep-faults", "--json"]).expect(0).json();
     assert_eq!((&kept["data"][0]["faults"], &kept["data"][0]["used"]), (&0.into(), &120.into()));
     // What is wrong with a photodiode that is not read does not count.

@@ -14,7 +14,6 @@ fn scale(cell: &mut String, by: f64) {
     }
 }
 
-/// A log with its rows changed, the names left as they are.
 /// Turns Fx and Fy of a log's row.
 fn turn(cells: &mut [String], by_deg: f64) {
     let (sin, cos) = by_deg.to_radians().sin_cos();
@@ -22,6 +21,7 @@ fn turn(cells: &mut [String], by_deg: f64) {
     (cells[10], cells[11]) = ((cos * x - sin * y).to_string(), (sin * x + cos * y).to_string());
 }
 
+/// A log with its rows changed, the names left as they are.
 fn write_changed(dir: &Dir, from: &str, to: &str, change: Change<'_>) {
     let text = dir.text(from);
     let (head, rows) = text.split_once('\n').expect("rows");

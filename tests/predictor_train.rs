@@ -1,7 +1,7 @@
 //! `lunula train` from end to end, on a sensor whose coefficients are known.
 
-use crate::util::sensor::{Recording, near, numbers, offset, slope};
-use crate::util::{Answer, Dir, Json};
+use crate::util::sensor::{Recording, near, numbers, offset, slope, slopes};
+use crate::util::{Answer, Dir, Json, number};
 
 /// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient
 /// of 0).
@@ -28,8 +28,7 @@ fn the_coefficients_come_back_exactly() {
         dir.train("train.csv", target, "m.json", &["-q"]).expect(0);
         let model = dir.parsed("m.json");
         for t in 0..count {
-            let wanted: Vec<f64> = (0..8).map(|k| slope(first + t, k)).collect();
-            near(&numbers(&model["model"]["jacobian"][t]), &wanted, EXACT);
+            near(&numbers(&model["model"]["jacobian"][t]), &slopes(first + t), EXACT);
         }
         let reported = dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json();
         for (t, name) in model["targets"].list().iter().enumerate() {
@@ -320,7 +319,6 @@ fn friction_brings_forces_into_the_cone_and_both_ways_are_reported() {
 
     dir.lunula(&["predict", "m.json", "held.csv", "--out", "p.csv", "-q"]).expect(0);
     let rows = dir.table("p.csv");
-    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
     let mut at_the_edge = 0;
     for row in &rows {
         let shear = number(row, "Fx_N").hypot(number(row, "Fy_N"));

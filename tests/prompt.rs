@@ -4,13 +4,14 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};
-use std::process::{Child, Command, Stdio};
+use std::process::Child;
 use std::time::{Duration, Instant};
 
 use lunula::prompt::REST_N;
 use lunula_predictor::{ForceSpace, cone_coverage};
 
-use crate::util::page::{Page, ends, signal};
+use crate::util::browser::Browser;
+use crate::util::page::{Page, ends, signal, until};
 use crate::util::{Dir, Json};
 
 const PROTOCOL: &str = r#"
@@ -177,6 +178,17 @@ impl Prompter {
 }
 
 impl Session {
+    /// Stopped by the page: its report, and what happened.
+    #[track_caller]
+    fn stops(self, dir: &Dir) -> (serde_json::Value, Vec<String>) {
+        self.page.key("stop");
+        self.page.key("stop");
+        assert_eq!(ends(self.child), 1);
+        let report = dir.parsed("r.run.json");
+        let events = report["turns"].list().iter().map(|turn| turn["event"].words().to_owned()).collect();
+        (report, events)
+    }
+
     /// A page that is looked at shows frames while the devices send.
     fn look(&mut self, seconds: f64, force: bool) {
         for n in 0..(seconds / 0.5) as u32 {
@@ -206,11 +218,7 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
     session.look(1.0, true);
     assert!(session.page.posts("frames", "{\"frames\":[{}]}").starts_with("HTTP/1.1 400"));
     assert!(session.page.posts("key", "{\"key\":\"dance\",\"time_s\":1}").starts_with("HTTP/1.1 400"));
-    session.page.key("stop");
-    session.page.key("stop");
-    assert_eq!(ends(session.child), 1);
-    let report = dir.parsed("r.run.json");
-    let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
+    let (report, events) = session.stops(&dir);
     assert_eq!(events[..4], ["begins", "stalled", "goes on", "paused"], "{events:?}");
     let stood_s = report["turns"][2]["stood_s"].number();
     assert!((1.0..=3.0).contains(&stood_s), "{stood_s}");
@@ -252,13 +260,9 @@ fn a_machine_that_sleeps_stops_the_ring() {
     let woke_s = session.page.now_s();
     assert!(woke_s - slept_s >= 3.5, "{slept_s} {woke_s}");
     session.devices.send(1.0, true);
-    session.page.key("stop");
-    session.page.key("stop");
-    assert_eq!(ends(session.child), 1);
-    let report = dir.parsed("r.run.json");
+    let (report, events) = session.stops(&dir);
     let stood_s: f64 = report["turns"].list().iter().filter_map(|turn| turn["stood_s"].as_f64()).sum();
-    let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
-    assert!(events.iter().any(|event| ["stalled", "paused"].contains(event)), "{events:?}");
+    assert!(events.iter().any(|event| ["stalled", "paused"].contains(&event.as_str())), "{events:?}");
     // While nobody could look nothing was recorded; what was is what was measured.
     let rows = dir.table("r.csv");
     let time_s = |row: &BTreeMap<String, String>| row["time_s"].parse::<f64>().expect("a time");
@@ -291,23 +295,13 @@ fn in_browser_a_session_shows_every_frame_where_the_trajectory_is() {
         "[[step]]\nkind = \"spiral\"\nseconds = 8\n[[step]]\nkind = \"bending\"\nseconds = 3\nstarts = \"at once\"";
     dir.write("p.toml", steps);
     let (child, page) = prompts(&dir, &["p.toml", "--source", "phantom:subject", "--out", "r.csv"]);
-    let mut looks = Command::new("chromium")
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--window-size=1200,800"])
-        .arg(format!("--user-data-dir={}", dir.path("profile").display()))
-        .arg(&page.0.0)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("chromium is installed");
-    let start = Instant::now();
-    while !dir.path("r.frames.csv").exists() && start.elapsed() < Duration::from_secs(30) {
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    let browser = Browser::open(&page.0.0, [1200, 800]);
+    until("frames", || dir.path("r.frames.csv").exists());
     page.key("go");
     std::thread::sleep(Duration::from_secs(15));
     page.key("stop");
     let code = ends(child);
-    let _ = (looks.kill(), looks.wait());
+    drop(browser);
     assert_eq!(code, 0);
     let report = dir.parsed("r.run.json");
     let frames = &report["frames"];

@@ -58,6 +58,11 @@ fn rows(start_s: f64, seconds: f64, fingers: &[&[Press]]) -> Vec<Vec<f64>> {
     (0..=(seconds * RATE_HZ) as usize).map(row).collect()
 }
 
+/// Four seconds of the index finger's presses, each row as `of` makes it of time and force.
+fn altered(of: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Vec<f64>> {
+    rows(0.0, 4.0, &[&INDEX]).iter().map(|row| of(row[0], row[1])).collect()
+}
+
 /// NaN is an empty cell.
 fn csv(names: &str, rows: &[Vec<f64>]) -> String {
     let mut text = format!("{names}\n");
@@ -154,8 +159,7 @@ fn means_are_over_trials_then_over_people() {
 #[test]
 fn a_trial_is_compared_with_the_reference_whatever_its_pace() {
     let dir = Dir::new();
-    let slower: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![1.1 * row[0], row[1]]).collect();
-    let weaker: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![row[0], 0.5 * row[1]]).collect();
+    let (slower, weaker) = (altered(|t_s, force| vec![1.1 * t_s, force]), altered(|t_s, force| vec![t_s, 0.5 * force]));
     for (name, rows) in [("expert", rows(7.0, 4.0, &[&INDEX])), ("slower", slower), ("weaker", weaker)] {
         dir.write(&format!("{name}.csv"), csv("time_s,Fz_N", &rows));
     }
@@ -237,31 +241,28 @@ fn forces_are_of_rows_in_touch_and_angles_of_rows_in_bending() {
 #[test]
 fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     let dir = Dir::new();
-    let lit: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| [row, vec![1.0]].concat()).collect();
-    dir.write("lab.csv", csv("time_s;Fz_N;P1", &lit).replace(',', ";"));
+    let lit = csv("time_s;Fz_N;P1", &altered(|t_s, force| vec![t_s, force, 1.0]));
+    dir.write("lab.csv", lit.replace(',', ";"));
     let report = run(&dir, "lab.csv --out o --json").expect(0).json();
     let impulse_ns = report["trials"][0]["fingers"][0]["impulse_ns"].number();
     assert!((impulse_ns - exact(&INDEX)[1]).abs() <= NEAR);
-    let up: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![row[0], -row[1]]).collect();
+    let up = altered(|t_s, force| vec![t_s, -force]);
     dir.write("up.csv", csv("time_s,Fz_N", &up));
     let answer = run(&dir, "up.csv --out u --json").expect(0);
     assert_eq!(answer.json()["trials"][0]["fingers"][0]["presses"], 0);
-    let slow: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![1000.0 * row[0], row[1]]).collect();
-    dir.write("ms.csv", csv("time_s,Fz_N", &slow));
+    dir.write("ms.csv", csv("time_s,Fz_N", &altered(|t_s, force| vec![1000.0 * t_s, force])));
     run(&dir, "ms.csv --out t").expect(0).says("ms.csv: rows are 10 s apart");
     // What is true of contact is no gate.
-    let flagged: Vec<Vec<f64>> =
-        rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![row[0], row[1], f64::from(row[1] < 0.0)]).collect();
+    let flagged = altered(|t_s, force| vec![t_s, force, f64::from(force < 0.0)]);
     dir.write("flag.csv", csv("time_s,Fz_N,contact", &flagged));
     let flag = run(&dir, "flag.csv --out f --json").expect(0);
     assert_eq!(flag.json()["trials"][0]["fingers"], report["trials"][0]["fingers"]);
     flag.says("column `contact` is 0 or 1, whether the finger touches, and is not read");
     // A decimal point that was lost, and a transducer at the end of its range.
-    let lost = |row: Vec<f64>| vec![row[0], if row[0] == 1.5 { 1e4 * row[1] - 1e3 } else { row[1] }];
-    dir.write("lost.csv", csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]).into_iter().map(lost).collect::<Vec<_>>()));
+    let lost = altered(|t_s, force| vec![t_s, if t_s == 1.5 { 1e4 * force - 1e3 } else { force }]);
+    dir.write("lost.csv", csv("time_s,Fz_N", &lost));
     run(&dir, "lost.csv --out t").expect(0).says("finger: Fz_N is -").says("far beyond all others");
-    let clipped = |row: Vec<f64>| vec![row[0], row[1].max(-0.7)];
-    dir.write("end.csv", csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]).into_iter().map(clipped).collect::<Vec<_>>()));
+    dir.write("end.csv", csv("time_s,Fz_N", &altered(|t_s, force| vec![t_s, force.max(-0.7)])));
     run(&dir, "end.csv --out t").expect(0).says("finger: Fz_N stays at exactly -0.7, its least value");
     // A spike in one row, a force that stands still while it presses, and a column that was copied to another finger.
     let wavers = |k: usize| -1.2 + (0.05 * k as f64).cos() + 0.01 * (7.0 * k as f64).sin();
@@ -345,8 +346,7 @@ fn wrong_recordings_are_refused_and_others_are_done() {
     };
     refused("a.csv", "time_s,P1\n0,1\n0.1,2\n").says("a.csv: has no normal force; name its column Fz_N");
     refused("b.csv", "time_s,Fz_N\n0,0\n0.2,0\n0.1,0\n").says("b.csv: line 4: time_s falls from 0.2 to 0.1");
-    let coarse: Vec<Vec<f64>> =
-        rows(0.0, 4.0, &[&INDEX]).iter().map(|row| vec![(row[0] * 50.0).floor() / 50.0, row[1]]).collect();
+    let coarse = altered(|t_s, force| vec![(t_s * 50.0).floor() / 50.0, force]);
     refused("g.csv", &csv("time_s,Fz_N", &coarse)).says("g.csv: 200 of 401 rows of a trial have the time of the row");
     refused("f.csv", "t,force\n0,1\n").says("f.csv: is neither a table with time_s and Fz_N");
     refused("c.csv", "time_s,Fz_N\n0,soft\n").says("c.csv:2: column `Fz_N`: `soft` is no finite number");

@@ -15,6 +15,11 @@ pub fn slope(target: usize, k: usize) -> f64 {
     if target == 3 { 32.0 * of_force } else { of_force }
 }
 
+/// The slopes of a target in all eight photodiodes.
+pub fn slopes(target: usize) -> [f64; 8] {
+    std::array::from_fn(|k| slope(target, k))
+}
+
 /// What a target is where all volts are 0.
 pub fn offset(target: usize) -> f64 {
     [0.25, -0.5, -0.375, 40.0][target] - (0..8).map(|k| 2.5 * slope(target, k)).sum::<f64>()
