@@ -74,14 +74,27 @@ fn without_wanted_the_last_stages_are_wanted_and_the_name_is_the_files() {
 }
 
 #[test]
-fn misspelt_keys_are_told_with_the_nearest() {
-    assert_eq!(faults("wanted = ", "wnated = "), ["4:1: unknown key `wnated`; did you mean `wanted`?"]);
+fn misspelt_keys_and_unknown_names_are_told_with_the_nearest() {
+    for (old, new, fault) in [
+        ("wanted = ", "wnated = ", "4:1: unknown key `wnated`; did you mean `wanted`?"),
+        ("sync = ", "snyc = ", "17:1: unknown key of the job `tie`: `snyc`; did you mean `sync`?"),
+        ("\"tie\"", "\"tei\"", "14:7: no job `tei`; did you mean `tie`?"),
+        ("\"angles\"", "\"angels\"", "15:10: `angels` is neither an input nor a stage; did you mean `angles`?"),
+        ("\"angles\"", "\"angles.joint\"", "15:10: the job `track` makes no `joint`; did you mean `joints`?"),
+        ("\"markers\"", "\"markers.x\"", "22:11: `markers` are files and have no columns; write \"markers\""),
+        ("[\"sets\"]", "[\"set\"]", "4:11: `set` is wanted, and no stage makes it; did you mean `sets`?"),
+        ("[\"sets\"]", "\"markers\"", "4:10: `markers` is an input, which is there already; wanted are stages"),
+        // An input with a fault is no unknown name too.
+        ("table = \"sessions.csv\"", "table = 3", "7:9: `table` has to be text: a path"),
+        ("[\"sets\"]", "[]", "4:10: nothing is wanted; name stages, or leave `wanted` out"),
+    ] {
+        assert_eq!(faults(old, new), [fault], "{new}");
+    }
     assert_eq!(
         faults("table = ", "tabel = ")[0],
         "6:9: the input `bending` has neither `table` nor `files`; write table = \"sessions.csv\" or files = \
          \"photos/{pose}/{subject}.png\""
     );
-    assert_eq!(faults("sync = ", "snyc = "), ["17:1: unknown key of the job `tie`: `snyc`; did you mean `sync`?"]);
     assert_eq!(
         faults("where = { sub", "wehre = { sub")[0],
         "16:31: unknown key of a reference `wehre`; did you mean `where`?"
@@ -90,50 +103,14 @@ fn misspelt_keys_are_told_with_the_nearest() {
         faults("[stage.sets]", "[stages.sets]")
             .contains(&"13:2: unknown key `stages`; did you mean `stage`?".to_owned())
     );
-}
-
-#[test]
-fn an_input_with_a_fault_is_no_unknown_name_too() {
-    let found = faults("table = \"sessions.csv\"", "table = 3");
-    assert_eq!(found, ["7:9: `table` has to be text: a path"]);
-}
-
-#[test]
-fn unknown_names_are_told_with_the_nearest() {
-    assert_eq!(faults("job = \"tie\"", "job = \"tei\""), ["14:7: no job `tei`; did you mean `tie`?"]);
-    assert_eq!(
-        faults("joints = \"angles\"", "joints = \"angels\""),
-        ["15:10: `angels` is neither an input nor a stage; did you mean `angles`?"]
-    );
-    assert_eq!(
-        faults("\"angles\"", "\"angles.joint\""),
-        ["15:10: the job `track` makes no `joint`; did you mean `joints`?"]
-    );
     assert_eq!(
         faults("\"bending.video\"", "\"bending\""),
         ["21:9: `bending` is a table; say which column holds the files: \"bending.COLUMN\""]
     );
     assert_eq!(
-        faults("\"markers\"", "\"markers.x\""),
-        ["22:11: `markers` are files and have no columns; write \"markers\""]
-    );
-}
-
-#[test]
-fn a_wanted_result_that_nothing_can_make_is_told_with_the_nearest() {
-    assert_eq!(
-        faults("[\"sets\"]", "[\"set\"]"),
-        ["4:11: `set` is wanted, and no stage makes it; did you mean `sets`?"]
-    );
-    assert_eq!(
         faults("[\"sets\"]", "[\"sets.trainin\"]"),
         ["4:11: `sets.trainin` is wanted, and the job `tie` makes no `trainin`; did you mean `training`?"]
     );
-    assert_eq!(
-        faults("[\"sets\"]", "\"markers\""),
-        ["4:10: `markers` is an input, which is there already; wanted are stages"]
-    );
-    assert_eq!(faults("[\"sets\"]", "[]"), ["4:10: nothing is wanted; name stages, or leave `wanted` out"]);
 }
 
 #[test]

@@ -14,6 +14,7 @@ use tempfile::TempDir;
 
 use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, Prepared, Work};
 use crate::pipeline::kinds;
+use crate::pipeline::store::hashes::files_in;
 use crate::stages::{Fate, Step};
 
 fn keys(pairs: &[(&str, &str)]) -> Keys {
@@ -33,6 +34,12 @@ fn wanting(parts: &[&'static str]) -> Demand {
     Demand { parts: parts.iter().copied().collect(), joints: None, clock: true }
 }
 
+/// Every file below a folder.
+fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let names = files_in(folder).expect("a folder").into_iter();
+    names.map(|name| (name.clone(), fs::read(folder.join(name)).expect("a file"))).collect()
+}
+
 /// A task's folder.
 struct Folder(TempDir);
 
@@ -43,20 +50,7 @@ impl Folder {
 
     /// All that is in it.
     fn bytes(&self) -> BTreeMap<String, Vec<u8>> {
-        let mut found = BTreeMap::new();
-        let mut open = vec![self.path().to_owned()];
-        while let Some(folder) = open.pop() {
-            for entry in fs::read_dir(folder).expect("a folder") {
-                let path = entry.expect("an entry").path();
-                if path.is_dir() {
-                    open.push(path);
-                } else {
-                    let name = path.strip_prefix(self.path()).expect("within").to_string_lossy().into_owned();
-                    found.insert(name, fs::read(path).expect("a file"));
-                }
-            }
-        }
-        found
+        bytes_below(self.path())
     }
 
     fn names(&self) -> Vec<String> {
@@ -103,15 +97,10 @@ impl Task<'_> {
 
 /// A whole folder.
 fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder");
-    for entry in fs::read_dir(from).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy(&path, &target);
-        } else {
-            fs::copy(&path, &target).expect("a copy");
-        }
+    for (name, bytes) in bytes_below(from) {
+        let target = to.join(name);
+        fs::create_dir_all(target.parent().expect("within it")).expect("a folder");
+        fs::write(target, bytes).expect("a copy");
     }
 }
 

@@ -1,13 +1,13 @@
 //! The kinds on models: the same bytes in whatever folder, whenever, on however many threads; and what they say of keys
 //! and inputs.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::{keys, kinds, step};
-use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, Maker, OptionFault, Prepared, Work};
+use super::{bytes_below, keys, kinds, step};
+use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, OptionFault, Prepared, Work};
 use crate::phantom::force::{ForceTrajectory, Spiral};
 use crate::phantom::log::{LogOptions, LogScene, write};
 use crate::predictor::tests::recording;
@@ -31,9 +31,8 @@ fn all(kind: &Kind) -> Demand {
     Demand { parts: kind.parts.iter().map(|part| part.name).collect(), joints: None, clock: true }
 }
 
-/// The job of a stage whose parts are all wanted.
-fn job(name: &str, stage: &str) -> Arc<dyn Maker> {
-    prepare(name, stage).expect("good keys").maker(&Keys::default(), &all(kind(name)))
+fn parts(names: &[&'static str]) -> Demand {
+    Demand { parts: names.iter().copied().collect(), ..Demand::default() }
 }
 
 impl Place {
@@ -58,15 +57,21 @@ impl Place {
         write(&LogScene::new(options).unwrap(), &self.path(name)).unwrap();
     }
 
-    /// Does a task of all parts into a folder of this name.
-    fn make(&self, name: &str, stage: &str, inputs: Vec<At>, out: &str) -> Made {
+    /// Does a task into a folder of this name.
+    fn run(&self, name: &str, stage: &str, demand: &Demand, inputs: Vec<At>, out: &str) -> Made {
         let folder = self.path(out);
         std::fs::create_dir_all(&folder).unwrap();
         let stop = AtomicBool::new(false);
         let work = Work { inputs, folder: &folder, before: None, threads: self.threads, stop: &stop };
-        let made = job(name, stage).run(&work).unwrap_or_else(|why| panic!("{out}: {why:#}"));
+        let job = prepare(name, stage).expect("good keys").maker(&Keys::default(), demand);
+        job.run(&work).unwrap_or_else(|why| panic!("{out}: {why:#}"))
+    }
+
+    /// The same of all parts.
+    fn make(&self, name: &str, stage: &str, inputs: Vec<At>, out: &str) -> Made {
+        let made = self.run(name, stage, &all(kind(name)), inputs, out);
         for part in kind(name).parts {
-            assert!(folder.join(part.file).exists(), "{out}: {} is there", part.file);
+            assert!(self.path(out).join(part.file).exists(), "{out}: {} is there", part.file);
         }
         made
     }
@@ -131,22 +136,12 @@ impl Place {
     }
 }
 
-/// Every file under a folder.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        match entry.path() {
-            path if path.is_dir() => found.extend(files(&path)),
-            path => drop(found.insert(path.clone(), std::fs::read(&path).unwrap())),
-        }
-    }
-    found
-}
-
-/// The same, named from the folder.
-fn within(place: &Place, made: &[(String, Vec<String>)]) -> BTreeMap<PathBuf, Vec<u8>> {
-    let folders = made.iter().flat_map(|(out, _)| files(&place.path(out)));
-    folders.map(|(path, bytes)| (path.strip_prefix(&place.folder).unwrap().to_owned(), bytes)).collect()
+/// Every file that was made.
+fn within(place: &Place, made: &[(String, Vec<String>)]) -> BTreeMap<String, Vec<u8>> {
+    let named = |out: &String| {
+        bytes_below(&place.path(out)).into_iter().map(move |(name, bytes)| (out.clone() + "/" + &name, bytes))
+    };
+    made.iter().flat_map(|(out, _)| named(out).collect::<Vec<_>>()).collect()
 }
 
 #[test]
@@ -160,11 +155,11 @@ fn results_are_the_same_bytes_in_any_folder_at_any_time_on_any_threads() {
     assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
     assert!(first.len() > 40, "{}", first.len());
     for (name, bytes) in &first {
-        assert!(*bytes == second[name], "{}", name.display());
+        assert!(*bytes == second[name], "{name}");
         let text = String::from_utf8_lossy(bytes);
-        assert!(!text.contains(dir.path().to_str().unwrap()), "{} holds a path", name.display());
-        let file = name.file_name().unwrap().to_str().unwrap();
-        assert!(!file.starts_with('.') && !file.ends_with("run.json") && file != "fit.json", "{}", name.display());
+        assert!(!text.contains(dir.path().to_str().unwrap()), "{name} holds a path");
+        let file = name.rsplit('/').next().unwrap();
+        assert!(!file.starts_with('.') && !file.ends_with("run.json") && file != "fit.json", "{name}");
     }
     let quality = |out: &str| -> &[String] { &made.iter().find(|one| one.0 == out).unwrap().1 };
     assert_eq!(quality("force"), ["Fx_N N RMS", "Fy_N N RMS", "Fz_N N RMS"]);
@@ -178,9 +173,9 @@ fn results_are_the_same_bytes_in_any_folder_at_any_time_on_any_threads() {
         quality("switched"),
         ["false switches per hour", "missed presses of all", "delay of presses seconds, median"]
     );
-    let model = String::from_utf8(first[Path::new("force/model.json")].clone()).unwrap();
+    let model = String::from_utf8(first["force/model.json"].clone()).unwrap();
     assert!(model.contains("\"name\": \"1.csv\"") && model.contains("\"subject\": \"S01\""), "{model}");
-    let merit = String::from_utf8(first[Path::new("evaluated/merit.csv")].clone()).unwrap();
+    let merit = String::from_utf8(first["evaluated/merit.csv"].clone()).unwrap();
     assert!(merit.contains("recording,4.csv,1,S01,Fz_N,120,"), "{merit}");
 }
 
@@ -190,16 +185,8 @@ fn what_is_not_wanted_is_not_made() {
     let place = Place { folder: dir.path().to_owned(), threads: 2 };
     ["1.csv", "2.csv", "3.csv"].iter().zip([0.0, 1.0, 2.0]).for_each(|(name, phase)| place.table(name, phase));
     let bare = |name: &str, stage: &str, inputs: Vec<At>, out: &str| {
-        let first = kind(name).parts[0].name;
-        let demand = Demand { parts: BTreeSet::from([first]), ..Demand::default() };
-        let (folder, stop) = (place.path(out), AtomicBool::new(false));
-        std::fs::create_dir_all(&folder).unwrap();
-        let work = Work { inputs, folder: &folder, before: None, threads: 1, stop: &stop };
-        prepare(name, stage).unwrap().maker(&Keys::default(), &demand).run(&work).unwrap();
-        files(&folder)
-            .into_keys()
-            .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
-            .collect::<Vec<_>>()
+        place.run(name, stage, &parts(&[kind(name).parts[0].name]), inputs, out);
+        bytes_below(&place.path(out)).into_keys().collect::<Vec<_>>()
     };
     let data = |role: &'static str, name: &str| place.at(role, name, &[]);
     let sets = vec![data("data", "1.csv"), data("data", "2.csv"), data("validate", "3.csv")];
@@ -274,9 +261,8 @@ fn coming(role: &'static str, led: Option<bool>) -> Foreseen {
 
 #[test]
 fn plans_leave_out_what_a_scene_does_not_need() {
-    let fate = |name: &str, keys: &str, inputs: &[Foreseen], parts: &[&'static str], stage: &str| {
-        let demand = Demand { parts: parts.iter().copied().collect(), ..Demand::default() };
-        let steps = prepare(name, keys).unwrap().steps(inputs, &demand).unwrap();
+    let fate = |name: &str, keys: &str, inputs: &[Foreseen], wanted: &[&'static str], stage: &str| {
+        let steps = prepare(name, keys).unwrap().steps(inputs, &parts(wanted)).unwrap();
         let (runs, why) = step(&steps, stage);
         (runs, why.to_owned())
     };
@@ -323,19 +309,11 @@ fn joints_are_demanded_only_for_what_needs_them() {
 
 #[test]
 fn results_depend_on_the_options_and_the_parts_wanted() {
-    let depends_on = |stage: &str, parts: &[&'static str]| {
-        let demand = Demand { parts: parts.iter().copied().collect(), ..Demand::default() };
-        prepare("train", stage).unwrap().depends_on(&demand)
-    };
-    assert_eq!(
-        depends_on("target = 'force'", &["model"]),
-        depends_on("target = 'force'\nhidden = 8", &["model", "merit"])
-    );
-    assert_ne!(depends_on("target = 'force'", &["model"]), depends_on("target = 'force'\nseed = 2", &["model"]));
-    assert_ne!(
-        depends_on("target = 'force'", &["model"]),
-        depends_on("target = 'force'", &["model", "learning_curve"])
-    );
+    let depends_on = |stage: &str, wanted: &[&'static str]| prepare("train", stage).unwrap().depends_on(&parts(wanted));
+    let plain = depends_on("target = 'force'", &["model"]);
+    assert_eq!(plain, depends_on("target = 'force'\nhidden = 8", &["model", "merit"]));
+    assert_ne!(plain, depends_on("target = 'force'\nseed = 2", &["model"]));
+    assert_ne!(plain, depends_on("target = 'force'", &["model", "learning_curve"]));
 }
 
 #[test]
@@ -345,20 +323,12 @@ fn a_log_is_fitted_alike_raw_and_labelled_and_under_other_names() {
     place.log("raw", 1);
     let log = std::fs::read_to_string(place.path("raw/log.csv")).unwrap();
     std::fs::write(place.path("other.csv"), log.replacen("P1", "ch_1", 1).replacen("led", "lamp", 1)).unwrap();
-    let run = |kind: &str, stage: &str, parts: &[&'static str], inputs: Vec<At>, out: &str| {
-        let folder = place.path(out);
-        std::fs::create_dir_all(&folder).unwrap();
-        let stop = AtomicBool::new(false);
-        let demand = Demand { parts: parts.iter().copied().collect(), ..Demand::default() };
-        let work = Work { inputs, folder: &folder, before: None, threads: 2, stop: &stop };
-        let job = prepare(kind, stage).expect("good keys").maker(&Keys::default(), &demand);
-        job.run(&work).unwrap_or_else(|why| panic!("{out}: {why:#}"))
-    };
     let inputs = vec![place.at("joints", "raw/truth/angles.csv", &[]), place.at("log", "raw/log.csv", &[])];
-    run("align", "", &["training"], inputs, "aligned");
+    place.run("align", "", &parts(&["training"]), inputs, "aligned");
     let stage = "free = ['k_C']\nforce = 'Fz_N'\narea_cm2 = 10\nphotodiode = { P1 = 1 }\nstarts = 1";
     let fit = |name: &str, more: &str, out: &str| {
-        let made = run("fit", &format!("{stage}{more}"), &["params"], vec![place.at("recordings", name, &[])], out);
+        let recordings = vec![place.at("recordings", name, &[])];
+        let made = place.run("fit", &format!("{stage}{more}"), &parts(&["params"]), recordings, out);
         (made.report["r2"].as_f64().expect("R2"), made.report["values"].clone())
     };
     let (raw, labelled) = (fit("raw/log.csv", "", "of-raw"), fit("aligned/training.csv", "", "of-set"));
