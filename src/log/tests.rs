@@ -68,16 +68,7 @@ fn dialects_read_alike() {
     same("spaces.csv", b" time_s , \"P1\", \"Fz_N\"\n 0 ,\"1.5\", \" -1 \"\n0.5,2.5,-2", &[]);
     same("german.txt", b"time_s;P1;Fz_N\n0;1,5;-1\n0,5;2,5;-2\n", &[&["`;`"], &["decimal commas"]]);
     same("tabs.tsv", b"time_s\tP1\tFz_N\n0\t1,5\t-1\n0,5\t2,5\t-2\n", &[&["tabs"], &["decimal commas"]]);
-    same(
-        "comments.csv",
-        b"# logger 3, \"A\nP1,P2\n"[..14]
-            .iter()
-            .chain(b"\n#\n\ntime_s,P1,Fz_N\n0,1.5,-1\n# pause\n0.5,2.5,-2\n")
-            .copied()
-            .collect::<Vec<u8>>()
-            .as_slice(),
-        &[],
-    );
+    same("comments.csv", b"# logger 3, \"A\n#\n\ntime_s,P1,Fz_N\n0,1.5,-1\n# pause\n0.5,2.5,-2\n", &[]);
     same("numpy.csv", b"# made by numpy\n# time_s,P1,Fz_N\n0.0,1.5,-1e0\n0.5,2.5,-2e0\n", &[&["names", "comment"]]);
     same("excel.csv", b"sep=;\r\ntime_s;P1;Fz_N\r\n0;1.5;-1\r\n0.5;2.5;-2\r\n", &[&["`;`"]]);
     same("trailing.csv", b"time_s,P1,Fz_N\n0,1.5,-1,\n0.5,2.5,-2,,\n", &[]);

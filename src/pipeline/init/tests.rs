@@ -2,20 +2,11 @@
 
 use super::shape::{PlaceNames, shape};
 use super::{InitError, propose};
+use crate::pipeline::tests::planned::folder_of as folder;
 use crate::pipeline::{Plan, Spec, kinds};
 
 const MARKERS: &str = "[markers]\na = \"#ff0000\"\n[segments]\n[joints]\nJ2 = [\"a\", \"b\"]\n";
 const LOG: &str = "time_s,P1,P2,Fz_N\n0,1,2,-1\n";
-
-fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
-    let dir = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        let path = dir.path().join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-    }
-    dir
-}
 
 /// What is proposed, after it was planned without fault.
 fn proposed(files: &[(&str, &str)]) -> (String, Vec<String>) {

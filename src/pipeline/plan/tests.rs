@@ -1,6 +1,6 @@
 //! Plans with toys: what is needed, of whom, in which share, and what is wrong with inputs.
 
-use crate::pipeline::plan::{PlanFate, plan_text};
+use crate::pipeline::plan::{Plan, PlanFate, plan_text};
 use crate::pipeline::store::standing::{Standing, Why};
 use crate::pipeline::tasks::{Share, Source};
 use crate::pipeline::tests::planned::Bench;
@@ -42,16 +42,19 @@ fn bench() -> Bench {
     Bench::new(&files())
 }
 
-fn ids(text: &str) -> Vec<String> {
-    bench().plan(text).tasks.into_iter().map(|task| task.id).collect()
+fn ids(plan: &Plan) -> Vec<&str> {
+    plan.tasks.iter().map(|task| task.id.as_str()).collect()
+}
+
+fn shares(plan: &Plan) -> Vec<(&str, Share)> {
+    plan.tasks.iter().map(|task| (task.id.as_str(), task.share)).collect()
 }
 
 #[test]
 fn rows_become_tasks_and_join_by_keys() {
     let plan = bench().plan(STUDY);
-    let ids: Vec<&str> = plan.tasks.iter().map(|task| task.id.as_str()).collect();
     assert_eq!(
-        ids,
+        ids(&plan),
         ["angles/S01/1/bending", "angles/S02/1/bending", "sets/S01/1/bending", "sets/S02/1/bending"],
         "in the table's order, without columns of files"
     );
@@ -101,8 +104,7 @@ fn only_tasks_that_a_wanted_one_needs_run() {
     let text =
         STUDY.replace("log = \"bending.log\"", "log = { from = \"bending.log\", where = { subject = \"S01\" } }");
     let plan = bench().plan(&text);
-    let ids: Vec<&str> = plan.tasks.iter().map(|task| task.id.as_str()).collect();
-    assert_eq!(ids, ["angles/S01/1/bending", "sets/S01/1/bending"]);
+    assert_eq!(ids(&plan), ["angles/S01/1/bending", "sets/S01/1/bending"]);
     let angles = &plan.stage_plans(&[])[0];
     assert!(
         angles
@@ -142,13 +144,11 @@ fn gathering_jobs_make_a_task_for_each_value_and_join_what_has_no_keys() {
              \"train\"\n{each}data = \"all.log\"\nvalidate = \"extra\"\n"
         )
     };
-    assert_eq!(ids(&gather("")), ["model"]);
-    assert_eq!(ids(&gather("each = [\"subject\"]\n")), ["model/S01", "model/S02", "model/S03"]);
-    assert_eq!(
-        ids(&gather("each = [\"kind\", \"subject\"]\n")),
-        ["model/bending/S01", "model/bending/S02", "model/touch/S03"]
-    );
+    let by_kind = bench().plan(&gather("each = [\"kind\", \"subject\"]\n"));
+    assert_eq!(ids(&by_kind), ["model/bending/S01", "model/bending/S02", "model/touch/S03"]);
+    assert_eq!(ids(&bench().plan(&gather(""))), ["model"]);
     let plan = bench().plan(&gather("each = [\"subject\"]\n"));
+    assert_eq!(ids(&plan), ["model/S01", "model/S02", "model/S03"]);
     let roles: Vec<&str> = plan.tasks[1].inputs.iter().map(|input| input.role).collect();
     assert_eq!(roles, ["data", "data", "validate"]);
     assert!(plan.tasks[1].inputs.iter().all(|input| input.may_fail));
@@ -175,8 +175,7 @@ fn files_become_tasks_with_what_lies_beside_them() {
     let plan = bench.plan(
         "[inputs.photos]\nfiles = \"p/{pose}/{subject}.png\"\n[stage.n]\njob = \"normalize\"\nphoto = \"photos\"\n",
     );
-    let ids: Vec<&str> = plan.tasks.iter().map(|task| task.id.as_str()).collect();
-    assert_eq!(ids, ["n/press/S01", "n/rest/S01"]);
+    assert_eq!(ids(&plan), ["n/press/S01", "n/rest/S01"]);
     assert_eq!(plan.tasks[0].inputs.len(), 1);
     let beside = &plan.tasks[1].inputs[1];
     assert_eq!((beside.role, beside.keys.to_string()), ("annotation", "pose=rest subject=S01".to_owned()));
@@ -191,9 +190,8 @@ fn generated_recordings_are_planned_before_they_stand() {
                 [stage.angles]\njob = \"track\"\nvideo = \"all.video\"\nmarkers = \"markers\"\n[stage.sets]\njob = \
                 \"tie\"\njoints = \"angles\"\nlog = \"logs\"\n";
     let plan = bench().plan(text);
-    let ids: Vec<(&str, Share)> = plan.tasks.iter().map(|task| (task.id.as_str(), task.share)).collect();
     assert_eq!(
-        ids,
+        shares(&plan),
         [
             ("phantom/recordings/S01", Share::Part(0)),
             ("phantom/recordings/S02", Share::Part(1)),
@@ -221,9 +219,8 @@ fn what_gathers_everything_is_made_when_parts_are_merged() {
         STUDY.replace("[\"sets\"]", "[\"test\"]")
     );
     let plan = bench().plan(&text);
-    let shares: Vec<(&str, Share)> = plan.tasks.iter().map(|task| (task.id.as_str(), task.share)).collect();
     assert_eq!(
-        shares,
+        shares(&plan),
         [
             ("angles/S01/1/bending", Share::Part(0)),
             ("angles/S02/1/bending", Share::Part(1)),
@@ -498,6 +495,5 @@ fn odd_key_values_are_folders_and_empty_ones_hold_for_all() {
     let mut files = files();
     files[0].1 = odd;
     let text = STUDY.replace("where = { kind = \"bending\" }\n", "").replace("[\"sets\"]", "[\"angles\"]");
-    let ids: Vec<String> = Bench::new(&files).plan(&text).tasks.into_iter().map(|task| task.id).collect();
-    assert_eq!(ids, ["angles/Müller_日本/1.5", "angles/_._x/_.", "angles/_/3"]);
+    assert_eq!(ids(&Bench::new(&files).plan(&text)), ["angles/Müller_日本/1.5", "angles/_._x/_.", "angles/_/3"]);
 }

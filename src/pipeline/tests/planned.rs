@@ -141,18 +141,23 @@ impl Maker for Nothing {
     }
 }
 
+/// A folder with these files.
+pub(in crate::pipeline) fn folder_of(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().expect("a folder");
+    for (name, text) in files {
+        let path = dir.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("within the folder")).expect("a folder");
+        std::fs::write(path, text).expect("a file");
+    }
+    dir
+}
+
 /// A folder with files, in which a pipeline is planned.
 pub(in crate::pipeline) struct Bench(tempfile::TempDir);
 
 impl Bench {
     pub(in crate::pipeline) fn new(files: &[(&str, &str)]) -> Self {
-        let dir = tempfile::tempdir().expect("a folder");
-        for (name, text) in files {
-            let path = dir.path().join(name);
-            std::fs::create_dir_all(path.parent().expect("within the folder")).expect("a folder");
-            std::fs::write(path, text).expect("a file");
-        }
-        Self(dir)
+        Self(folder_of(files))
     }
 
     pub(in crate::pipeline) fn try_plan(&self, text: &str) -> Result<Plan, PipelineError> {

@@ -2,6 +2,7 @@
 
 use super::walk::Matches;
 use super::{Disk, Listed, Pattern};
+use crate::pipeline::tests::planned::folder_of;
 
 fn find(pattern: &str, files: &[&str]) -> Matches {
     Pattern::parse(pattern).unwrap().find(&Listed::new(files.iter().copied()))
@@ -99,12 +100,7 @@ fn what_is_no_pattern_is_told() {
 
 #[test]
 fn the_disk_is_read_like_a_list_and_results_are_never_inputs() {
-    let dir = tempfile::tempdir().unwrap();
-    for name in ["a/x.csv", "a/b/y.csv", "out/a/z.csv"] {
-        let path = dir.path().join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, "").unwrap();
-    }
+    let dir = folder_of(&[("a/x.csv", ""), ("a/b/y.csv", ""), ("out/a/z.csv", "")]);
     let pattern = Pattern::parse("**/{n}.csv").unwrap();
     let out = Some(dir.path().join("out").canonicalize().unwrap());
     let paths = |disk: &Disk| -> Vec<String> { pattern.find(disk).matches.into_iter().map(|m| m.path).collect() };

@@ -199,24 +199,26 @@ fn one_direction_few_rows_and_a_constant_nail() {
     let film = Nail::new(1).film(&[Path::Spiral(0)]);
     // The beginning of the spiral is one straight press.
     let start = film.only_rows(&(0..12).collect::<Vec<_>>());
-    let (model, report) = fit_eigennails(&start, OnScores::Ridge, Some(16)).unwrap();
-    assert_eq!(report.modes, 11, "twelve centred rows");
-    assert!(
-        report.warnings[0].contains("16 modes were asked for, and 12 rows of 144 cells determine 11"),
-        "{:?}",
-        report.warnings
-    );
-    assert!(model.predict(start.x().view()).iter().all(|value| value.is_finite()));
-    assert!(report.directions.is_none() && report.no_directions.unwrap().contains("of one, press"));
     let few = film.only_rows(&(0..9).collect::<Vec<_>>());
-    let says = fit_eigennails(&few, OnScores::Ridge, None).unwrap_err().to_string();
-    assert!(says.contains("9 of 9 rows have all cells, and at least 10"), "{says}");
     let set = |x: Array2<f64>, y: Array2<f64>| {
         Dataset::plain(film.inputs().to_vec(), film.targets().to_vec(), x, y, 0.1).unwrap()
     };
     let constant = set(Array2::from_elem((ROWS, SIDE * SIDE), 0.1), film.y().clone());
+    let shaded = Array2::from_shape_fn((ROWS, SIDE * SIDE), |(_, cell)| 50.3 + 0.7 * cell as f64);
+    let shaded = set(shaded, film.y().clone());
     for on_scores in [OnScores::Ridge, OnScores::Process] {
-        assert_eq!(fit_eigennails(&constant, on_scores, None).unwrap_err(), FitFault::Unchanging);
+        let (model, report) = fit_eigennails(&start, on_scores, Some(16)).unwrap();
+        assert_eq!(report.modes, 11, "twelve centred rows");
+        let words = "16 modes were asked for, and 12 rows of 144 cells determine 11";
+        assert!(report.warnings.iter().any(|one| one.contains(words)), "{on_scores:?}: {:?}", report.warnings);
+        let (forces, sds) = (model.predict(start.x().view()), model.sd(start.x().view()));
+        assert!(forces.iter().chain(&sds).all(|value| value.is_finite()), "{on_scores:?}");
+        assert!(report.directions.is_none() && report.no_directions.unwrap().contains("of one, press"));
+        let says = fit_eigennails(&few, on_scores, None).unwrap_err().to_string();
+        assert!(says.contains("9 of 9 rows have all cells, and at least 10"), "{says}");
+        for still in [&constant, &shaded] {
+            assert_eq!(fit_eigennails(still, on_scores, None).unwrap_err(), FitFault::Unchanging);
+        }
         // Targets that do not change are predicted as they are.
         let still = set(film.x().clone(), Array2::from_elem((ROWS, 3), -1.25));
         let (model, report) = fit_eigennails(&still, on_scores, None).unwrap();
