@@ -40,9 +40,10 @@ fn is_refused(joints: &str, log: &str, more: &[&str], words: &[&str]) {
 
 #[test]
 fn the_contracts_columns_alone_are_enough() {
-    let (dir, answer) = aligned(&joints(), &log(every_40_ms(100.0)), &["-q"]);
+    let (dir, answer) = aligned(&joints(), &log(every_40_ms(100.0)).replacen(",10.012\n", ",NaN\n", 1), &["-q"]);
     answer.expect(0);
     let set = dir.table("out/training.csv");
+    assert!(set[3]["P1"].is_empty() && !set[5]["P1"].is_empty(), "what is missing stays missing");
     for row in &set {
         let time_s: f64 = row["time_s"].parse().unwrap();
         if row["label_status"] == "ok" {
@@ -71,14 +72,10 @@ fn a_log_of_one_row_and_of_none() {
     let set = dir.table("out/training.csv");
     assert_eq!((set.len(), set[0]["J2_deg"].parse::<f64>().unwrap().round()), (1, 10.0));
     is_refused(&joints(), &log([]), &[], &["log.csv"]);
-    is_refused(&joints(), "", &[], &["log.csv"]);
 }
 
 #[test]
 fn times_that_run_backward() {
-    let mut times: Vec<f64> = every_40_ms(100.0).collect();
-    times.reverse();
-    is_refused(&joints(), &log(times), &[], &["log.csv:"]);
     let reset: Vec<f64> = every_40_ms(100.0).chain(every_40_ms(50.0)).collect();
     is_refused(&joints(), &log(reset.clone()), &[], &["log.csv:52", "--piece"]);
     let (dir, answer) = aligned(&joints(), &log(reset), &["--piece", "1", "-q"]);
@@ -90,8 +87,6 @@ fn times_that_run_backward() {
 
 #[test]
 fn text_and_infinities_where_numbers_belong() {
-    let text = log(every_40_ms(100.0)).replacen("100.08,", "100.08,high", 1);
-    is_refused(&joints(), &text, &[], &["log.csv:4", "P1", "high"]);
     let infinite = log(every_40_ms(100.0)).replacen("100.08,", "100.08,inf\n0,", 1);
     is_refused(&joints(), &infinite, &[], &["log.csv:4", "inf"]);
     is_refused(
@@ -103,26 +98,13 @@ fn text_and_infinities_where_numbers_belong() {
 }
 
 #[test]
-fn missing_values_stay_missing() {
-    let missing = log(every_40_ms(100.0)).replacen("100.12,10.012", "100.12,NaN", 1);
-    assert!(missing.contains("NaN"));
-    let (dir, answer) = aligned(&joints(), &missing, &["-q"]);
-    answer.expect(0);
-    assert_eq!(dir.table("out/training.csv")[3]["P1"], "");
-}
-
-#[test]
 fn a_table_without_a_clock_or_with_a_clock_that_was_never_read() {
-    let without: String = joints().replace("clock_s,", "");
-    let without: String = without.lines().map(|l| l.to_owned() + "\n").collect();
-    let cut = |line: &str| {
+    let without = |line: &str| {
         let mut cells: Vec<&str> = line.split(',').collect();
-        if cells.len() == 6 {
-            cells.remove(2);
-        }
+        cells.remove(2);
         cells.join(",") + "\n"
     };
-    let without: String = without.lines().map(cut).collect();
+    let without: String = joints().lines().map(without).collect();
     is_refused(&without, &log(every_40_ms(100.0)), &[], &["--sync offset=SECONDS"]);
     let (_, answer) = aligned(&without, &log(every_40_ms(100.0)), &["--sync", "offset=100", "-q"]);
     answer.expect(0);

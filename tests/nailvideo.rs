@@ -113,12 +113,7 @@ fn a_press_has_its_onset_and_its_release() {
     }
     // The same bytes whatever the threads.
     dir.words(&job.replace("--out out", "--threads 1 --out one")).expect(0);
-    for name in ["photodiodes.csv", "motion.csv", "presses.csv", "nail.json", "nail.png"] {
-        assert!(
-            fs::read(dir.path("out").join(name)).unwrap() == fs::read(dir.path("one").join(name)).unwrap(),
-            "{name}"
-        );
-    }
+    dir.same_results("out", "one");
     // `predict` and its like read it as a log.
     dir.words("nailvideo s/video.mp4 --outline s/outline.json --plan").expect(0);
 }

@@ -77,12 +77,9 @@ fn a_clean_scene_gives_every_angle_with_its_time() {
 #[test]
 fn the_same_bytes_whatever_the_threads() {
     let dir = scene(&["--noise", "4"]);
-    posture(&dir, &["--tracks", "tracks.csv", "--threads", "1"]).expect(0);
-    let once = ["joints.csv", "tracks.csv", "joints-angles.png"].map(|name| std::fs::read(dir.path(name)).expect(name));
-    posture(&dir, &["--tracks", "tracks.csv", "--threads", "4"]).expect(0);
-    let again =
-        ["joints.csv", "tracks.csv", "joints-angles.png"].map(|name| std::fs::read(dir.path(name)).expect(name));
-    assert!(once == again);
+    let line = "posture scene/video.mp4 --markers scene/markers.toml --out {out}/joints.csv --tracks {out}/tracks.csv";
+    let results = dir.on_any_threads(line);
+    assert!(["joints.csv", "tracks.csv", "joints-angles.png"].iter().all(|name| results.contains_key(*name)));
 }
 
 #[test]

@@ -68,25 +68,6 @@ fn forces_or_angles_are_predicted_for_each_row() {
 }
 
 #[test]
-fn columns_are_found_by_name_whatever_their_order() {
-    let dir = models();
-    predict(&dir, &["force.json", "r.csv"], &[]);
-    let plain = dir.text("p.csv");
-    let mixed = Recording::of(300..400).with("note", |_, _| "x".to_owned()).with("P9", |_, _| "nan".to_owned());
-    let mut names: Vec<&str> = mixed.names.iter().map(String::as_str).collect();
-    names.sort_by_key(|name| name.bytes().rev().collect::<Vec<_>>());
-    dir.recording("mixed.csv", &mixed.only(&names));
-    predict(&dir, &["force.json", "mixed.csv"], &[]);
-    assert_eq!(dir.text("p.csv"), plain);
-    dir.recording("renamed.csv", &mixed.clone().renamed("P4", "p4"));
-    let wrong = dir.lunula(&["predict", "force.json", "renamed.csv", "--out", "q.csv"]).expect(2);
-    wrong.says("renamed.csv: has no column `P4`; is it `p4`?");
-    dir.recording("lacking.csv", &mixed.without("P4"));
-    dir.lunula(&["predict", "force.json", "lacking.csv", "--out", "q.csv"]).expect(2).says("has no column `P4`");
-    assert!(!dir.path("q.csv").exists());
-}
-
-#[test]
 fn force_and_posture_are_gated() {
     let dir = models();
     let truth = Recording::of(300..400);

@@ -178,14 +178,20 @@ impl Dir {
     /// The results of a command line, which puts them into the folder `{out}`: the same bytes on one thread and on four.
     #[track_caller]
     pub fn on_any_threads(&self, line: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
-        let [one, four] = [("one", 1), ("four", 4)].map(|(out, threads)| {
+        for (out, threads) in [("one", 1), ("four", 4)] {
             self.words(&format!("{} --threads {threads}", line.replace("{out}", out))).expect(0);
-            self.results_of(out)
-        });
+        }
+        self.same_results("one", "four")
+    }
+
+    /// The results of two folders, which are the same.
+    #[track_caller]
+    pub fn same_results(&self, one: &str, other: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
+        let [first, second] = [one, other].map(|folder| self.results_of(folder));
         let differ: Vec<&String> =
-            one.keys().chain(four.keys()).filter(|name| one.get(*name) != four.get(*name)).collect();
-        assert!(differ.is_empty(), "{line}: other bytes on four threads: {differ:?}");
-        one
+            first.keys().chain(second.keys()).filter(|name| first.get(*name) != second.get(*name)).collect();
+        assert!(differ.is_empty(), "other bytes in {other} than in {one}: {differ:?}");
+        first
     }
 
     /// A table's rows, each by column.
