@@ -10,6 +10,8 @@ mod frames;
 mod lines;
 mod row;
 mod spoilt;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use cell::{bare, is_missing, is_name, led, led_of, with_decimal_comma};
 pub use checksum::{Checksum, crc16, xor8};

@@ -11,12 +11,10 @@ fn decoded(bytes: &[u8], query: &str) -> Seen {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bytes");
     std::fs::write(&path, bytes).unwrap();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("{}?{query}", path.display()), &clock).unwrap();
-    let mut log = Log::default();
-    run(&mut stream, &clock, &mut log, |_| false).unwrap();
-    assert_eq!((log.rows.len(), log.spoilt), (1, 0), "{log:?}");
-    log.rows.remove(0)
+    let mut reader = Reader::open(&format!("{}?{query}", path.display()));
+    reader.run(|_| false).unwrap();
+    assert_eq!((reader.log.rows.len(), reader.log.spoilt), (1, 0), "{:?}", reader.log);
+    reader.log.rows.remove(0)
 }
 
 #[test]

@@ -12,94 +12,73 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use super::*;
 use crate::wire::{Frame, Spoil};
 
-/// Goes on until the rows have come.
-fn rows(stream: &mut Stream, clock: &HostClock, log: &mut Log, count: usize) {
-    run(stream, clock, log, |log| log.rows.len() >= count).unwrap();
-    assert_eq!(log.rows.len(), count, "{log:?}");
-}
-
-fn until(stream: &mut Stream, clock: &HostClock, log: &mut Log, condition: Condition) {
-    run(stream, clock, log, |log| log.states.last() == Some(&condition)).unwrap();
-}
-
 #[test]
 fn a_server_that_goes_is_found_again_within_a_second() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let at = listener.local_addr().unwrap();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("tcp:{at}"), &clock).unwrap();
-    let mut log = Log::default();
+    let mut reader = Reader::open(&format!("tcp:{at}"));
     let (mut peer, _) = listener.accept().unwrap();
     peer.write_all(b"time_s,n,P1\n0.1,1,1\n0.2,2,2\n0.3,3").unwrap();
-    rows(&mut stream, &clock, &mut log, 2);
+    reader.rows(2);
     drop(peer);
     let gone = Instant::now();
-    until(&mut stream, &clock, &mut log, Condition::Reconnecting);
-    assert_eq!(log.states[log.states.len() - 2], Condition::Lost);
+    reader.until(Condition::Reconnecting);
+    assert_eq!(reader.log.states[reader.log.states.len() - 2], Condition::Lost);
     // The half row at the seam is dropped, and the names need not come again.
     let (mut peer, _) = listener.accept().unwrap();
     peer.write_all(b"0.7,7,7\n0.8,8,8\n").unwrap();
-    rows(&mut stream, &clock, &mut log, 4);
+    reader.rows(4);
     assert!(gone.elapsed() < Duration::from_secs(1), "{:?}", gone.elapsed());
-    assert_eq!((log.rows[2].begins, log.rows[2].lost, log.rows[3].begins), (true, 4, false));
-    assert_eq!((log.rows[2].time_s, log.spoilt), (0.7, 0));
-    assert_eq!(log.states.last(), Some(&Condition::Ok));
-    let certificate = stream.certificate();
+    assert_eq!((reader.log.rows[2].begins, reader.log.rows[2].lost, reader.log.rows[3].begins), (true, 4, false));
+    assert_eq!((reader.log.rows[2].time_s, reader.log.spoilt), (0.7, 0));
+    assert_eq!(reader.log.states.last(), Some(&Condition::Ok));
+    let certificate = reader.stream.certificate();
     assert_eq!((certificate.counts.rows, certificate.counts.lost, certificate.gaps_count), (4, 4, 1));
-    assert_eq!(certificate.states.len(), log.states.len() + 1);
+    assert_eq!(certificate.states.len(), reader.log.states.len() + 1);
 }
 
 #[test]
 fn once_is_enough_where_the_address_says_so() {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("tcp:{}?once", listener.local_addr().unwrap()), &clock).unwrap();
-    let mut log = Log::default();
-    let (mut peer, _) = listener.accept().unwrap();
+    let (mut reader, mut peer) = connected("?once");
     peer.write_all(b"time_s,P1\n0.1,1\n0.2,2").unwrap();
     drop(peer);
-    run(&mut stream, &clock, &mut log, |_| false).unwrap();
-    assert_eq!((log.rows.len(), log.ended), (2, true));
-    drop(listener);
-    let said = open("tcp:127.0.0.1:1", &clock).err().unwrap().to_string();
+    reader.run(|_| false).unwrap();
+    assert_eq!((reader.log.rows.len(), reader.log.ended), (2, true));
+    let said = refused("tcp:127.0.0.1:1");
     assert!(said.contains("nothing listens there"), "{said}");
 }
 
 #[test]
 fn clients_may_come_and_go() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("tcp-listen:{free}"), &clock).unwrap();
-    let mut log = Log::default();
-    assert_eq!(stream.state().condition, Condition::Reconnecting);
+    let mut reader = Reader::open(&format!("tcp-listen:{free}"));
+    assert_eq!(reader.stream.state().condition, Condition::Reconnecting);
     for client in 0..3_usize {
         let mut peer = TcpStream::connect(free).unwrap();
         write!(peer, "time_s,P1\n{client}.1,1\n{client}.2,2\n").unwrap();
-        rows(&mut stream, &clock, &mut log, 2 * client + 2);
+        reader.rows(2 * client + 2);
         drop(peer);
-        until(&mut stream, &clock, &mut log, Condition::Reconnecting);
+        reader.until(Condition::Reconnecting);
     }
-    let begins: Vec<bool> = log.rows.iter().map(|row| row.begins).collect();
+    let begins: Vec<bool> = reader.log.rows.iter().map(|row| row.begins).collect();
     assert_eq!(begins, [true, false, true, false, true, false]);
-    let said = open(&format!("tcp-listen:{free}"), &clock).err().unwrap().to_string();
+    let said = refused(&format!("tcp-listen:{free}"));
     assert!(said.contains("another program listens there"), "{said}");
 }
 
 #[test]
 fn datagrams_are_rows_in_any_order() {
     let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("udp:{free}"), &clock).unwrap();
-    let mut log = Log::default();
+    let mut reader = Reader::open(&format!("udp:{free}"));
     let peer = UdpSocket::bind("127.0.0.1:0").unwrap();
     // The ends of lines may be missing.
     for datagram in ["time_us,n,P1", "10,1,1\n20,2,2", "40,4,4\n", "30,3,3", "40,4,4", "50,5,5"] {
         peer.send_to(datagram.as_bytes(), free).unwrap();
     }
-    rows(&mut stream, &clock, &mut log, 4);
-    let counts = stream.certificate().counts;
+    reader.rows(4);
+    let counts = reader.stream.certificate().counts;
     assert_eq!((counts.rows, counts.lost, counts.disorder, counts.duplicates), (4, 1, 1, 1));
-    until(&mut stream, &clock, &mut log, Condition::Stalled);
+    reader.until(Condition::Stalled);
 }
 
 /// A port whose other end is in our hand, under a path of its own.
@@ -123,10 +102,10 @@ fn port() -> (tempfile::TempDir, PathBuf, OwnedFd) {
 }
 
 /// A stream over TCP, and its other end.
-fn connected(clock: &HostClock) -> (Stream, TcpStream) {
+fn connected(query: &str) -> (Reader, TcpStream) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let stream = open(&format!("tcp:{}", listener.local_addr().unwrap()), clock).unwrap();
-    (stream, listener.accept().unwrap().0)
+    let reader = Reader::open(&format!("tcp:{}{query}", listener.local_addr().unwrap()));
+    (reader, listener.accept().unwrap().0)
 }
 
 fn send(device: &OwnedFd, mut bytes: &[u8]) {
@@ -138,54 +117,47 @@ fn send(device: &OwnedFd, mut bytes: &[u8]) {
 #[test]
 fn a_serial_port_is_unplugged_and_plugged_in_again() {
     let (_folder, path, plugged) = port();
-    let clock = HostClock::start();
     let address = format!("serial:{}?baud=921600", path.display());
-    let mut stream = open(&address, &clock).unwrap();
-    let busy = open(&address, &clock).err().unwrap().to_string();
+    let mut reader = Reader::open(&address);
+    let busy = refused(&address);
     assert!(busy.contains("another program reads it"), "{busy}");
-    let mut log = Log::default();
     send(&plugged, b"\xff\x00,7\nboot: 1\r\ntime_us,n,P1\r\n1000,1,1\r\n2000,2,2\r\n3000,");
-    rows(&mut stream, &clock, &mut log, 2);
+    reader.rows(2);
     drop(plugged);
     let gone = Instant::now();
-    until(&mut stream, &clock, &mut log, Condition::Reconnecting);
+    reader.until(Condition::Reconnecting);
     // Seen at once: this allows for a machine that sleeps.
     assert!(gone.elapsed() < Duration::from_secs(1), "{:?}", gone.elapsed());
     // It comes back within a row, and starts again.
     let plugged = device(&path);
     let back = Instant::now();
-    until(&mut stream, &clock, &mut log, Condition::Stalled);
+    reader.until(Condition::Stalled);
     send(&plugged, b"00,8,8\r\ntime_us,n,P1\r\n500,0,5\r\n1500,1,6\r\n");
-    rows(&mut stream, &clock, &mut log, 4);
+    reader.rows(4);
     assert!(back.elapsed() < Duration::from_secs(1), "{:?}", back.elapsed());
-    assert_eq!((log.rows[2].begins, log.rows[2].lost, &log.rows[2].values), (true, 0, &vec![5.0]));
-    assert!(log.rows[2].time_s > log.rows[1].time_s, "{:?}", log.rows);
-    assert!((log.rows[3].time_s - log.rows[2].time_s - 0.001).abs() <= 1e-9, "{:?}", log.rows);
-    let counts = stream.certificate().counts;
-    assert_eq!((counts.rows, counts.set_back, log.columns), (4, 1, 1));
-    assert!(stream.certificate().spoilt.iter().all(|rows| rows.kind == Spoil::BeforeNames));
+    assert_eq!((reader.log.rows[2].begins, reader.log.rows[2].lost, &reader.log.rows[2].values), (true, 0, &vec![5.0]));
+    assert!(reader.log.rows[2].time_s > reader.log.rows[1].time_s, "{:?}", reader.log.rows);
+    assert!((reader.log.rows[3].time_s - reader.log.rows[2].time_s - 0.001).abs() <= 1e-9, "{:?}", reader.log.rows);
+    let counts = reader.stream.certificate().counts;
+    assert_eq!((counts.rows, counts.set_back, reader.log.columns), (4, 1, 1));
+    assert!(reader.stream.certificate().spoilt.iter().all(|rows| rows.kind == Spoil::BeforeNames));
 }
 
 #[test]
 fn half_a_row_that_we_come_into_is_no_row() {
     let (_folder, path, plugged) = port();
-    let clock = HostClock::start();
-    let address: Address = format!("serial:{}", path.display()).parse().unwrap();
     let columns = Some(["time_us", "P1"].map(str::to_owned).into());
     let options = StreamOptions { columns, ..StreamOptions::default() };
-    let mut stream = Stream::open(&address, options, naming(), clock.now_ns()).unwrap();
-    let mut log = Log::default();
+    let mut reader = Reader::with(&format!("serial:{}", path.display()), options).unwrap();
     send(&plugged, b"00,1\r\n2000,2\r\n3000,3\r\n");
-    rows(&mut stream, &clock, &mut log, 2);
-    assert_eq!((log.rows[0].time_s, log.rows[0].begins), (0.002, true));
+    reader.rows(2);
+    assert_eq!((reader.log.rows[0].time_s, reader.log.rows[0].begins), (0.002, true));
 }
 
 #[test]
 fn frames_come_over_a_serial_port() {
     let (_folder, path, plugged) = port();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("serial:{}?form=frames&volts-per-count=0.001", path.display()), &clock).unwrap();
-    let mut log = Log::default();
+    let mut reader = Reader::open(&format!("serial:{}?form=frames&volts-per-count=0.001", path.display()));
     let frame = |n: u16| Frame {
         photodiodes: [n, 0, 1000, 4, 5, 6, 7, 65_535],
         time_us: u32::from(n) * 1000,
@@ -197,25 +169,23 @@ fn frames_come_over_a_serial_port() {
     for n in (1..20).filter(|n| *n != 5) {
         send(&plugged, &frame(n).encoded());
     }
-    rows(&mut stream, &clock, &mut log, 18);
-    assert_eq!(log.rows[4].lost, 1);
-    assert_eq!(log.rows[17].values, [0.019, 0.0, 1.0, 0.004, 0.005, 0.006, 0.007, 65.535]);
-    assert!(stream.certificate().spoilt.is_empty());
+    reader.rows(18);
+    assert_eq!(reader.log.rows[4].lost, 1);
+    assert_eq!(reader.log.rows[17].values, [0.019, 0.0, 1.0, 0.004, 0.005, 0.006, 0.007, 65.535]);
+    assert!(reader.stream.certificate().spoilt.is_empty());
 }
 
 #[test]
 fn a_port_that_is_too_slow_is_named() {
     let (_folder, path, plugged) = port();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("serial:{}", path.display()), &clock).unwrap();
-    let mut log = Log::default();
+    let mut reader = Reader::open(&format!("serial:{}", path.display()));
     send(&plugged, b"time_us,n,P1\n");
     // A kilohertz, of which every sixth row comes, as 60 bytes at 115 200 baud would.
     for n in (0..240_u32).filter(|n| n % 6 == 0 || *n < 20) {
         send(&plugged, format!("{},{n},{:040}\n", n * 1000, n).as_bytes());
     }
-    rows(&mut stream, &clock, &mut log, 56);
-    let notes = stream.certificate().notes;
+    reader.rows(56);
+    let notes = reader.stream.certificate().notes;
     assert!(
         notes.len() == 1 && notes[0].contains("115200 baud carry") && notes[0].contains("device has 1000"),
         "{notes:?}"
@@ -225,19 +195,17 @@ fn a_port_that_is_too_slow_is_named() {
 #[test]
 fn another_baud_rate_is_recognized() {
     let (_folder, path, plugged) = port();
-    let clock = HostClock::start();
-    let mut stream = open(&format!("serial:{}", path.display()), &clock).unwrap();
+    let mut reader = Reader::open(&format!("serial:{}", path.display()));
     let noise: Vec<u8> = (0..3000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8 | 0x80).collect();
     send(&plugged, &noise);
-    let said = run(&mut stream, &clock, &mut Log::default(), |_| false).unwrap_err().to_string();
+    let said = reader.run(|_| false).unwrap_err().to_string();
     assert!(said.contains("wrong baud rate") && said.contains("?baud="), "{said}");
-    assert!(stream.ended());
+    assert!(reader.stream.ended());
 }
 
 #[test]
 fn rows_that_an_xor_misses_do_not_move_the_clock() {
-    let clock = HostClock::start();
-    let (mut stream, mut peer) = connected(&clock);
+    let (mut reader, mut peer) = connected("");
     writeln!(peer, "time_us,n,P1").unwrap();
     for n in 110_000..110_300 {
         let body = format!("{},{n},{}", n * 1000, n % 7);
@@ -249,23 +217,21 @@ fn rows_that_an_xor_misses_do_not_move_the_clock() {
             _ => write!(peer, "{line}").unwrap(),
         }
     }
-    let mut log = Log::default();
-    rows(&mut stream, &clock, &mut log, 298);
-    let counts = stream.certificate().counts;
+    reader.rows(298);
+    let counts = reader.stream.certificate().counts;
     assert_eq!((counts.doubtful, counts.lost, counts.set_back), (2, 2, 0));
-    assert!(log.rows.windows(2).all(|pair| pair[1].time_s - pair[0].time_s <= 0.0021));
+    assert!(reader.log.rows.windows(2).all(|pair| pair[1].time_s - pair[0].time_s <= 0.0021));
 }
 
 #[test]
 fn ports_that_are_not_there_are_named() {
-    let said = open("serial:/dev/ttyNOWHERE", &HostClock::start()).err().unwrap().to_string();
+    let said = refused("serial:/dev/ttyNOWHERE");
     assert!(said.contains("serial:/dev/ttyNOWHERE: does not exist; there "), "{said}");
 }
 
 #[test]
 fn a_live_row_allocates_nothing() {
-    let clock = HostClock::start();
-    let (mut stream, mut peer) = connected(&clock);
+    let (Reader { mut stream, clock, .. }, mut peer) = connected("");
     let mut count = 0_u64;
     let mut cycle = |peer: &mut TcpStream, text: &[u8], rows: u64| {
         peer.write_all(text).unwrap();

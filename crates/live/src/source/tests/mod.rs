@@ -9,27 +9,7 @@ mod played;
 use std::time::Duration;
 
 use crate::source::{Address, Condition, Event, HostClock, SourceFault, Stream, StreamOptions, wait};
-use crate::wire::{Meaning, Naming, Use};
-
-/// Columns by their names: `time_*`, `n`, `led`; all others are values.
-pub(super) fn naming() -> Naming {
-    Box::new(|names| {
-        let mut meaning = Meaning::default();
-        for name in names {
-            meaning.uses.push(match name.as_str() {
-                "time_us" => Use::Time { per_second: 1e6 },
-                "time_s" => Use::Time { per_second: 1.0 },
-                "n" => Use::Counter,
-                "led" => Use::Led,
-                _ => {
-                    meaning.values += 1;
-                    Use::Value { at: meaning.values - 1, scaled: true }
-                }
-            });
-        }
-        Ok(meaning)
-    })
-}
+use crate::wire::testing::naming;
 
 /// A row without what depends on the host's clock.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,24 +49,51 @@ impl Log {
     }
 }
 
-pub(super) fn open(address: &str, clock: &HostClock) -> Result<Stream, SourceFault> {
-    let address: Address = address.parse()?;
-    Stream::open(&address, StreamOptions::default(), naming(), clock.now_ns())
+/// A stream that is open, and what came from it.
+pub(super) struct Reader {
+    pub(super) stream: Stream,
+    pub(super) clock: HostClock,
+    pub(super) log: Log,
 }
 
-/// Runs the loop until `enough`, for ten seconds at most.
-pub(super) fn run(
-    stream: &mut Stream,
-    clock: &HostClock,
-    log: &mut Log,
-    mut enough: impl FnMut(&Log) -> bool,
-) -> Result<(), SourceFault> {
-    let until_ns = clock.now_ns() + Duration::from_secs(10).as_nanos() as u64;
-    while !enough(log) && !stream.ended() {
-        wait(&[&*stream], &[], Some(until_ns), clock).unwrap();
-        let now_ns = clock.now_ns();
-        assert!(now_ns < until_ns, "{log:?}");
-        stream.poll(now_ns, &mut |event| log.take(event))?;
+impl Reader {
+    pub(super) fn of(stream: Stream, clock: HostClock) -> Self {
+        Self { stream, clock, log: Log::default() }
     }
-    Ok(())
+
+    pub(super) fn with(address: &str, options: StreamOptions) -> Result<Self, SourceFault> {
+        let (address, clock): (Address, _) = (address.parse()?, HostClock::start());
+        Ok(Self::of(Stream::open(&address, options, Box::new(naming), clock.now_ns())?, clock))
+    }
+
+    pub(super) fn open(address: &str) -> Self {
+        Self::with(address, StreamOptions::default()).unwrap()
+    }
+
+    /// Runs the loop until `enough`, for ten seconds at most.
+    pub(super) fn run(&mut self, mut enough: impl FnMut(&Log) -> bool) -> Result<(), SourceFault> {
+        let until_ns = self.clock.now_ns() + Duration::from_secs(10).as_nanos() as u64;
+        while !enough(&self.log) && !self.stream.ended() {
+            wait(&[&self.stream], &[], Some(until_ns), &self.clock).unwrap();
+            let now_ns = self.clock.now_ns();
+            assert!(now_ns < until_ns, "{:?}", self.log);
+            self.stream.poll(now_ns, &mut |event| self.log.take(event))?;
+        }
+        Ok(())
+    }
+
+    /// Goes on until so many rows have come.
+    pub(super) fn rows(&mut self, count: usize) {
+        self.run(|log| log.rows.len() >= count).unwrap();
+        assert_eq!(self.log.rows.len(), count, "{:?}", self.log);
+    }
+
+    pub(super) fn until(&mut self, condition: Condition) {
+        self.run(|log| log.states.last() == Some(&condition)).unwrap();
+    }
+}
+
+/// What is said of an address that can't be opened.
+pub(super) fn refused(address: &str) -> String {
+    Reader::with(address, StreamOptions::default()).err().expect("a fault").to_string()
 }

@@ -20,12 +20,10 @@ fn csv(rows: usize) -> String {
 }
 
 fn played(address: &str) -> (Stream, Log) {
-    let clock = HostClock::start();
-    let mut stream = open(address, &clock).unwrap();
-    let mut log = Log::default();
-    run(&mut stream, &clock, &mut log, |_| false).unwrap();
-    assert!(log.ended && log.columns == 1);
-    (stream, log)
+    let mut reader = Reader::open(address);
+    reader.run(|_| false).unwrap();
+    assert!(reader.log.ended && reader.log.columns == 1);
+    (reader.stream, reader.log)
 }
 
 #[test]
@@ -55,10 +53,9 @@ fn every_pace_gives_the_same_rows() {
 #[test]
 fn a_file_begins_again_where_it_is_looped() {
     let file = file(csv(50).as_bytes());
-    let clock = HostClock::start();
-    let mut stream = open(&format!("{}?loop", file.path().display()), &clock).unwrap();
-    let mut log = Log::default();
-    run(&mut stream, &clock, &mut log, |log| log.rows.len() >= 175).unwrap();
+    let mut reader = Reader::open(&format!("{}?loop", file.path().display()));
+    reader.run(|log| log.rows.len() >= 175).unwrap();
+    let log = reader.log;
     let begins: Vec<usize> = (0..175).filter(|&row| log.rows[row].begins).collect();
     assert_eq!(begins, [0, 50, 100, 150]);
     for pair in log.rows.windows(2) {
@@ -71,13 +68,10 @@ fn a_file_begins_again_where_it_is_looped() {
 
 #[test]
 fn what_is_wrong_with_a_file_is_said() {
-    let clock = HostClock::start();
     let said = |text: &[u8], query: &str| {
         let file = file(text);
-        let address = format!("{}{query}", file.path().display());
-        let mut log = Log::default();
-        let done = open(&address, &clock).and_then(|mut stream| run(&mut stream, &clock, &mut log, |_| false));
-        done.unwrap_err().to_string()
+        let reader = Reader::with(&format!("{}{query}", file.path().display()), StreamOptions::default());
+        reader.and_then(|mut reader| reader.run(|_| false)).unwrap_err().to_string()
     };
     for (text, query, words) in [
         (&b"\x1f\x8b\x08"[..], "", "gunzip"),
@@ -91,7 +85,7 @@ fn what_is_wrong_with_a_file_is_said() {
         let said = said(text, query);
         assert!(said.contains(words), "{said}");
     }
-    let said = open("no/such.csv", &clock).err().unwrap().to_string();
+    let said = refused("no/such.csv");
     assert!(said.contains("no/such.csv: does not exist"), "{said}");
 }
 
@@ -123,10 +117,12 @@ fn rows_that_a_program_makes_are_played_like_a_file() {
         let made = Made { names: ["time_s", "led", "P1"].map(str::to_owned).into(), row: 0 };
         let options = StreamOptions::default();
         let pace = (Pace::Max, looped);
-        let mut stream = Stream::of_rows("phantom:x".to_owned(), Box::new(made), pace, Some(0.5), &options, naming());
-        let (clock, mut log) = (HostClock::start(), Log::default());
+        let stream =
+            Stream::of_rows("phantom:x".to_owned(), Box::new(made), pace, Some(0.5), &options, Box::new(naming));
+        let mut reader = Reader::of(stream, HostClock::start());
         // A call hands out a piece.
-        run(&mut stream, &clock, &mut log, |log| log.rows.len() >= rows).unwrap();
+        reader.run(|log| log.rows.len() >= rows).unwrap();
+        let mut log = reader.log;
         log.rows.truncate(rows);
         let last = &log.rows[rows - 1];
         assert_eq!((log.rows.len(), last.time_s), (rows, rows as f64 * 0.5));
@@ -138,8 +134,7 @@ fn rows_that_a_program_makes_are_played_like_a_file() {
 #[test]
 fn a_played_row_allocates_nothing() {
     let file = file(csv(100_000).as_bytes());
-    let clock = HostClock::start();
-    let mut stream = open(&file.path().display().to_string(), &clock).unwrap();
+    let Reader { mut stream, .. } = Reader::open(&file.path().display().to_string());
     let mut rows = 0_u64;
     let mut poll = |stream: &mut Stream| {
         stream.poll(0, &mut |event| rows += u64::from(matches!(event, Event::Row(_)))).unwrap();

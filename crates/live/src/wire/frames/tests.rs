@@ -5,19 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::wire::Meaning;
-
-fn naming() -> Naming {
-    Box::new(|names| {
-        let uses = names.iter().enumerate().map(|(column, name)| match name.as_str() {
-            "time_us" => Use::Time { per_second: 1e6 },
-            "n" => Use::Counter,
-            "led" => Use::Led,
-            _ => Use::Value { at: column - 3, scaled: true },
-        });
-        Ok(Meaning { uses: uses.collect(), values: 8, texts: 0 })
-    })
-}
+use crate::wire::testing::naming;
 
 fn frame(n: u32) -> Frame {
     let mut mixed = n.wrapping_mul(2_654_435_761);
@@ -31,7 +19,7 @@ fn frame(n: u32) -> Frame {
 
 /// The numbers of the frames in a stream whose pieces end at `cuts`, each checked against the frame it was.
 fn numbers(stream: &[u8], cuts: &[usize]) -> (Vec<u32>, Frames) {
-    let mut frames = Frames::new(naming(), None);
+    let mut frames = Frames::new(Box::new(naming), None);
     let mut found = Vec::new();
     let mut begin = 0;
     for end in cuts.iter().copied().chain([stream.len()]) {
@@ -61,7 +49,7 @@ fn a_frame_has_27_bytes_of_which_only_the_last_is_zero() {
 #[test]
 fn a_frame_allocates_nothing() {
     let stream: Vec<u8> = (0..1000).flat_map(|n| frame(n).encoded()).collect();
-    let mut frames = Frames::new(naming(), Some(1e-3));
+    let mut frames = Frames::new(Box::new(naming), Some(1e-3));
     frames.next(&mut &[][..]).unwrap();
     let mut count = 0;
     let counted = allocation_counter::measure(|| {

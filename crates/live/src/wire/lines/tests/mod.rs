@@ -3,31 +3,8 @@
 mod damage;
 
 use super::*;
-use crate::wire::Meaning;
 use crate::wire::checksum::{crc16, xor8};
-
-/// A column's use by its name: `time_us`, `time_s`, `n`, `led`, values that begin with `P` or `F`.
-pub(super) fn naming(names: &[String]) -> Result<Meaning, String> {
-    let mut values = 0;
-    let mut uses = Vec::new();
-    for name in names {
-        uses.push(match name.as_str() {
-            "time_us" => Use::Time { per_second: 1e6 },
-            "time_s" => Use::Time { per_second: 1.0 },
-            "n" => Use::Counter,
-            "led" => Use::Led,
-            name if name.starts_with(['P', 'F']) => {
-                values += 1;
-                Use::Value { at: values - 1, scaled: name.starts_with('P') }
-            }
-            _ => Use::None,
-        });
-    }
-    if values == 0 {
-        return Err("there is no photodiode; name them P1, P2".to_owned());
-    }
-    Ok(Meaning { uses, values, texts: 0 })
-}
+use crate::wire::testing::naming;
 
 pub(super) fn lines(options: LineOptions) -> Lines {
     Lines::new(Box::new(naming), options)
