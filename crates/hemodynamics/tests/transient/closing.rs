@@ -5,7 +5,7 @@ use lunula_hemodynamics::{
 };
 
 use super::reference::rows;
-use super::{loads, rest};
+use super::{distance, is_open, loads, rest};
 
 /// Of the time of a collapse, s.
 const TIME_TOLERANCE_S: f64 = 1e-9;
@@ -31,7 +31,7 @@ fn a_collapse_names_the_vessel_and_its_time_to_a_nanosecond_at_any_tolerance() {
             assert_eq!(site, Site::Vein);
             assert!((time_s - exact).abs() <= TIME_TOLERANCE_S, "{load_pa} Pa, {rtol:e}: {time_s} is not {exact}");
             assert_eq!(before.len(), (exact * 100.0) as usize + 1);
-            assert!((0..before.len()).all(|k| before.lumens(k).iter().all(|&lumen| lumen > 0.0)));
+            assert!(is_open(&before));
             assert_eq!(before.statistics().stopped, Stopped::Collapsed);
         }
     }
@@ -61,9 +61,7 @@ fn contact_keeps_every_vessel_open_up_to_a_million_pascals() {
                 let loads = loads(&format!("step:{proximal}@0..2"), &format!("step:{distal}@0..2"));
                 let got = simulate(&model, &loads, &rest(), &times(), &SolveOptions::at(rtol));
                 let got = got.unwrap_or_else(|fault| panic!("{proximal} {distal} Pa, {rtol:e}: {fault}"));
-                for k in 0..got.len() {
-                    assert!(got.lumens(k).iter().all(|&lumen| lumen > 0.0), "{proximal} {distal} Pa, {rtol:e}");
-                }
+                assert!(is_open(&got), "{proximal} {distal} Pa, {rtol:e}");
                 let statistics = got.statistics();
                 assert!(statistics.evaluations <= 20_000, "{proximal} {distal} Pa, {rtol:e}: {statistics:?}");
                 if let Some(resting) = resting.filter(|_| distal == 0.0) {
@@ -81,12 +79,8 @@ fn contact_at_a_million_pascals_agrees_with_a_tight_run() {
     let tight = simulate(&model, &loads, &rest(), &times(), &SolveOptions::at(1e-13)).unwrap();
     for rtol in [1e-3, 1e-6, 1e-9] {
         let got = simulate(&model, &loads, &rest(), &times(), &SolveOptions::at(rtol)).unwrap();
-        for k in 0..got.len() {
-            for j in 0..3 {
-                let error = (got.lumens(k)[j] - tight.lumens(k)[j]).abs();
-                assert!(error <= rtol, "{rtol:e}: {error:e} at {k}");
-            }
-        }
+        let error = distance(&got, &tight);
+        assert!(error <= rtol, "{rtol:e}: {error:e}");
     }
 }
 

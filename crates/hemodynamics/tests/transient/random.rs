@@ -4,7 +4,7 @@ use lunula_hemodynamics::{
     Collapse, Load, Loads, Model, Order, Parameters, SolveOptions, Solver, State, Symbol, Trajectory, simulate,
 };
 
-use super::load;
+use super::{distance, load};
 
 /// Runs over their tolerance, of those whose conditioning amplifies an error no more than twofold: of 5040 such runs
 /// measured none (with contact 2 of 2500), of the 520 here of either kind none.
@@ -122,13 +122,6 @@ impl Case {
         let got = simulate(&self.model, &self.loads, &self.start, self.exact.times_s(), &SolveOptions::at(rtol));
         distance(&got.expect("as the exact one"), &self.exact) / rtol
     }
-}
-
-fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let all = |t: &Trajectory| (0..t.len()).flat_map(|k| t.lumens(k).to_vec()).collect::<Vec<f64>>();
-    // Written so that NaN is kept.
-    all(a).iter().zip(all(b)).fold(0.0, |most, (a, b)| if (a - b).abs() <= most { most } else { (a - b).abs() })
 }
 
 fn check(collapse: Collapse, most_pa: f64, seed: u64) {

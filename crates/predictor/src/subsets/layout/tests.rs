@@ -24,6 +24,11 @@ struct Made {
 }
 
 impl Made {
+    /// Candidates of a seed.
+    fn of(seed: u64, n: usize, persons: usize, targets: usize) -> Self {
+        Self::new(&mut ChaCha8Rng::seed_from_u64(seed), n, persons, targets)
+    }
+
     /// Candidates on a grid of 1.25 mm, five across.
     fn new(rng: &mut ChaCha8Rng, n: usize, persons: usize, targets: usize) -> Self {
         let at = |k: usize| [1.25 * ((k % 5) as f64 - 2.0), 1.25 * (k / 5) as f64];
@@ -144,8 +149,7 @@ fn small_problems_are_solved_as_by_brute_force() {
 #[test]
 fn sixty_nine_places_are_solved_as_by_brute_force() {
     for (seed, most) in [(1, 4), (2, 3), (3, 3)] {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let made = Made::new(&mut rng, 69, 1, 3);
+        let made = Made::of(seed, 69, 1, 3);
         let moments = made.moments();
         for k in 1..=most {
             let cost = |places: &[usize]| plain_cost(Criterion::Error, &moments, 0.1, places);
@@ -160,7 +164,7 @@ fn sixty_nine_places_are_solved_as_by_brute_force() {
 #[test]
 #[ignore = "measures time"]
 fn speed_of_sixty_nine_places() {
-    let problem = Made::new(&mut ChaCha8Rng::seed_from_u64(1), 69, 7, 3).problem(0.1);
+    let problem = Made::of(1, 69, 7, 3).problem(0.1);
     let rules = Rules { apart_mm: 1.5, ..Rules::default() };
     let all: Vec<usize> = (0..69).collect();
     println!("all: {}", problem.cost(&all));
@@ -194,8 +198,7 @@ fn two_hundred_problems_are_solved_as_by_brute_force() {
 fn the_bound_never_lies_above_the_optimum() {
     let mut stopped = 0;
     for seed in 0..20 {
-        let mut rng = ChaCha8Rng::seed_from_u64(100 + seed);
-        let problem = Made::new(&mut rng, 16, 2, 2).problem(0.1);
+        let problem = Made::of(100 + seed, 16, 2, 2).problem(0.1);
         let (_, proof) = solved(&problem, &Rules::default(), 5).unwrap();
         let known = Choice { places: vec![0, 1, 2, 3, 4], cost: problem.cost(&[0, 1, 2, 3, 4]) };
         let mut last = 0.0;
@@ -215,8 +218,7 @@ fn the_bound_never_lies_above_the_optimum() {
 #[test]
 fn candidates_in_any_order_give_the_same_layout() {
     for seed in 0..10 {
-        let mut rng = ChaCha8Rng::seed_from_u64(200 + seed);
-        let made = Made::new(&mut rng, 20, 2, 2);
+        let made = Made::of(200 + seed, 20, 2, 2);
         let turned: Vec<usize> = (0..20).map(|k| (7 * k + 3) % 20).collect();
         let candidates: Vec<Candidate> = turned.iter().map(|&k| made.candidates[k].clone()).collect();
         let moments: Vec<Moments> = made
@@ -242,8 +244,7 @@ fn candidates_in_any_order_give_the_same_layout() {
 #[test]
 fn a_mirrored_nail_has_the_mirrored_layout() {
     for seed in 0..10 {
-        let mut rng = ChaCha8Rng::seed_from_u64(300 + seed);
-        let made = Made::new(&mut rng, 20, 2, 2);
+        let made = Made::of(300 + seed, 20, 2, 2);
         let mirrored: Vec<Candidate> =
             made.candidates.iter().map(|one| Candidate { across_mm: -one.across_mm, ..one.clone() }).collect();
         let other = LayoutProblem::new(Criterion::Error, &mirrored, &made.moments(), 0.0).unwrap();
@@ -259,8 +260,7 @@ fn a_mirrored_nail_has_the_mirrored_layout() {
 #[test]
 fn rules_are_kept_and_the_best_under_them_is_found() {
     for seed in 0..12 {
-        let mut rng = ChaCha8Rng::seed_from_u64(400 + seed);
-        let made = Made::new(&mut rng, 15, 1, 2);
+        let made = Made::of(400 + seed, 15, 1, 2);
         let moments = made.moments();
         let cost = |places: &[usize]| plain_cost(Criterion::Error, &moments, 0.1, places);
         // Five in a row: 4 - k % 5 is the mirror image of column k % 5.
@@ -296,15 +296,14 @@ fn rules_are_kept_and_the_best_under_them_is_found() {
             }
         }
     }
-    let made = Made::new(&mut ChaCha8Rng::seed_from_u64(0), 15, 1, 1);
+    let made = Made::of(0, 15, 1, 1);
     assert!(search(&made.problem(0.0), &Rules { apart_mm: 100.0, ..Rules::default() }, 2, STARTS).is_none());
     assert!(search(&made.problem(0.0), &Rules { keep: vec![1, 2], ..Rules::default() }, 1, STARTS).is_none());
 }
 
 #[test]
 fn duplicated_candidates_change_no_cost() {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let made = Made::new(&mut rng, 10, 2, 2);
+    let made = Made::of(7, 10, 2, 2);
     let twice: Vec<usize> = (0..20).map(|k| k % 10).collect();
     let candidates: Vec<Candidate> = twice
         .iter()
@@ -330,8 +329,7 @@ fn duplicated_candidates_change_no_cost() {
 
 #[test]
 fn noise_without_end_leaves_the_mean_and_all_places_the_whole_model() {
-    let mut rng = ChaCha8Rng::seed_from_u64(8);
-    let made = Made::new(&mut rng, 9, 3, 2);
+    let made = Made::of(8, 9, 3, 2);
     for noise_sd in [1e12, f64::INFINITY] {
         let [greedy, best] = search(&made.problem(noise_sd), &Rules::default(), 4, STARTS).unwrap();
         assert!((greedy.cost - 1.0).abs() <= 1e-15 && (best.cost - 1.0).abs() <= 1e-15);
@@ -378,8 +376,7 @@ fn classes_are_separated_as_by_brute_force() {
 
 #[test]
 fn what_others_choose_is_the_best_by_their_own_measure() {
-    let mut rng = ChaCha8Rng::seed_from_u64(9);
-    let made = Made::new(&mut rng, 12, 1, 2);
+    let made = Made::of(9, 12, 1, 2);
     let (problem, rules) = (made.problem(0.0), Rules::default());
     let c = &made.moments()[0].c;
     let determinant_of = |places: &[usize]| {
@@ -407,8 +404,7 @@ fn what_others_choose_is_the_best_by_their_own_measure() {
 
 #[test]
 fn a_person_left_out_is_out() {
-    let mut rng = ChaCha8Rng::seed_from_u64(10);
-    let made = Made::new(&mut rng, 8, 3, 2);
+    let made = Made::of(10, 8, 3, 2);
     let (all, moments) = (made.problem(0.1), made.moments());
     let without = all.without(1).unwrap();
     let costs = all.costs_of_persons(&[1, 4]);
