@@ -147,8 +147,8 @@ fn an_annotation_or_mask_of_another_picture_is_refused() {
     costs_only_itself(&dir, &["d.json", "[1600, 1400] px", "[160, 140] px"]);
     std::fs::remove_file(dir.path("set/d.json")).expect("removed");
     image::GrayImage::from_pixel(80, 70, image::Luma([255])).save(dir.place("masks/d.png")).expect("a mask");
-    let answer = dir.lunula(&["photos", "set", "--out", "out", "--masks", "masks"]).expect(1);
-    assert!(answer.stderr.contains("masks/d.png: was drawn on a picture of [80, 70] px"), "{}", answer.stderr);
+    let answer = dir.words("photos set --out out --masks masks").expect(1);
+    answer.says("masks/d.png: was drawn on a picture of [80, 70] px");
 }
 
 #[test]
@@ -327,7 +327,7 @@ fn photographs_of_several_colour_profiles_are_warned_of() {
     let dir = good_set();
     let mixed = "the set mixes colour profiles";
     nail_with(&dir, "d", &moxcms::ColorProfile::new_srgb());
-    assert!(!dir.lunula(&["photos", "set", "--out", "out"]).expect(0).stderr.contains(mixed));
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0).never_says(mixed);
     nail_with(&dir, "e", &moxcms::ColorProfile::new_display_p3());
     let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
     answer.says(mixed).says("4 photograph(s) of sRGB or none (a.png first)").says("1 photograph(s) of Display P3");
@@ -404,8 +404,7 @@ fn hostile_names_stay_words() {
     dir.nail("set/a & <b>");
     dir.nail("set/c");
     dir.nail("set/c-2");
-    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
-    assert!(answer.stderr.contains("subject `c-2` could be taken for a nail of subject `c`"), "{}", answer.stderr);
+    dir.words("photos set --out out").expect(1).says("subject `c-2` could be taken for a nail of subject `c`");
     let html = dir.text("out/report.html");
     assert!(html.contains("a &amp; &lt;b&gt;") && !html.contains("<b>"));
 }

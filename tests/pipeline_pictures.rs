@@ -35,22 +35,15 @@ fn photographs(dir: &Dir, there: usize) {
         ..PhotoOptions::default()
     };
     lunula::phantom::photos::write(&options, &dir.path("")).expect("photographs");
-    for subject in there + 1..=5 {
-        for pose in ["nominal", "flexion"] {
-            for ending in ["png", "json"] {
-                let name = format!("{pose}/s{subject:02}.{ending}");
-                std::fs::rename(dir.path(&format!("photos/{name}")), dir.place(&format!("aside/{name}")))
-                    .expect("moved");
-            }
-        }
-    }
+    (there + 1..=5).for_each(|subject| take(dir, subject, "photos", "aside"));
 }
 
-fn bring(dir: &Dir, subject: &str) {
+/// Moves the photographs of a subject.
+fn take(dir: &Dir, subject: usize, from: &str, to: &str) {
     for pose in ["nominal", "flexion"] {
         for ending in ["png", "json"] {
-            let name = format!("{pose}/{subject}.{ending}");
-            std::fs::rename(dir.path(&format!("aside/{name}")), dir.place(&format!("photos/{name}"))).expect("moved");
+            let name = format!("{pose}/s{subject:02}.{ending}");
+            std::fs::rename(dir.path(&format!("{from}/{name}")), dir.place(&format!("{to}/{name}"))).expect("moved");
         }
     }
 }
@@ -74,7 +67,7 @@ fn one_subject_more_touches_that_subject_and_the_maps() {
     let run = |out: &str| dir.lunula(&["run", "coloration.toml", "--out", out, "--json"]).expect(0);
     assert_eq!(counts(&run("out")), [5, 0, 0]);
     assert_eq!(counts(&run("out")), [0, 5, 0]);
-    bring(&dir, "s05");
+    take(&dir, 5, "aside", "photos");
     let more = run("out");
     assert_eq!(counts(&more), [2, 4, 0]);
     let stands = more.json().to_string();

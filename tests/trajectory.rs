@@ -199,7 +199,7 @@ fn a_plan_says_what_is_left_out_and_does_nothing() {
     let plan = run(&dir, "posture --plan --no-figures --out t.csv --json").expect(0).json();
     let fates: Vec<_> = plan["plan"].list().iter().map(|step| step["fate"].words()).collect();
     assert_eq!(fates, ["run", "run", "left_out", "left_out", "left_out"]);
-    assert!(run(&dir, "force --plan").expect(0).stdout.contains("4501 rows of time_s, Fx_N, Fy_N, Fz_N"));
+    run(&dir, "force --plan").expect(0).prints("4501 rows of time_s, Fx_N, Fy_N, Fz_N");
     run(&dir, "force --plan --every 0").expect(2).says("--every 0");
     assert!(dir.bytes_of(".").is_empty());
 }

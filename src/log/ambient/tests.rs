@@ -32,6 +32,11 @@ fn noted(samples: &Samples, words: &str) -> bool {
     samples.warnings.iter().chain(&samples.notes).any(|note| note.contains(words))
 }
 
+#[track_caller]
+fn is_noted(samples: &Samples, words: &str) {
+    assert!(noted(samples, words), "{words}: {:?} {:?}", samples.warnings, samples.notes);
+}
+
 /// The greatest error of the first channel where the signal is steady.
 fn worst(samples: &Samples) -> f64 {
     samples.photodiodes[0].values.iter().filter(|v| !v.is_nan()).map(|v| (v - SIGNAL_V).abs()).fold(0.0, f64::max)
@@ -55,16 +60,10 @@ fn ambient_light_that_varies_by_a_tenth_is_removed() {
     }
     // A ripple at 6 Hz, near half the rate of unlit samples, stays and is said: 0.71 % in the mean square, counted 1.86
     // times.
-    assert!(noted(
-        &all(&alternating(1000, |t| 1.0 + 0.01 * (TAU * 6.0 * t).sin())),
-        "too fast to follow are up to 1.3"
-    ));
+    let ripple = all(&alternating(1000, |t| 1.0 + 0.01 * (TAU * 6.0 * t).sin()));
+    is_noted(&ripple, "too fast to follow are up to 1.3");
     let samples = all(&alternating(1000, slow(1.0)));
-    assert!(
-        noted(&samples, "50.0 to 50.0 % of what the photodiodes read lit; a row's noise is 1.28 times"),
-        "{:?}",
-        samples.notes
-    );
+    is_noted(&samples, "50.0 to 50.0 % of what the photodiodes read lit; a row's noise is 1.28 times");
 }
 
 #[test]
@@ -209,11 +208,8 @@ fn samples_at_the_rails_are_flagged() {
     let flagged = samples.faults.iter().filter(|f| *f == "saturated: P2").count();
     assert_eq!(flagged, clipped.iter().filter(|&&v| v == top).count());
     assert!(flagged > 400 && samples.faults.iter().all(|f| f.is_empty() || f == "saturated: P2"));
-    assert!(
-        noted(&samples, "P2 stays at exactly its greatest value") && samples.warnings.len() == 1,
-        "{:?}",
-        samples.warnings
-    );
+    is_noted(&samples, "P2 stays at exactly its greatest value");
+    assert_eq!(samples.warnings.len(), 1, "{:?}", samples.warnings);
     // The same upside down.
     let mut down = log.clone();
     down.photodiodes.iter_mut().flat_map(|c| &mut c.values).for_each(|v| *v = -*v);
@@ -276,15 +272,11 @@ fn dead_and_stuck_channels_are_warned_of() {
         channel("P6", (0..3000).map(|k| if k % 200 < 10 { 0.1 + f64::from(k % 13) } else { 0.0 }).collect()),
     ];
     let samples = all(&log(time_s, None, channels));
-    assert!(noted(&samples, "P1 is 0.002 V in all lit samples: dead"), "{:?}", samples.notes);
-    assert!(noted(&samples, "P2 has only 2 different values"), "{:?}", samples.notes);
-    assert!(
-        noted(&samples, "P3 does not move at all in 1 stretch(es); the longest, from 10.000 to 11.990 s"),
-        "{:?}",
-        samples.notes
-    );
-    assert!(noted(&samples, "P6 is 0 V in 95.0 % of the lit samples: dead"), "{:?}", samples.notes);
-    assert!(noted(&samples, "P5 has no value at all"), "{:?}", samples.warnings);
+    is_noted(&samples, "P1 is 0.002 V in all lit samples: dead");
+    is_noted(&samples, "P2 has only 2 different values");
+    is_noted(&samples, "P3 does not move at all in 1 stretch(es); the longest, from 10.000 to 11.990 s");
+    is_noted(&samples, "P6 is 0 V in 95.0 % of the lit samples: dead");
+    is_noted(&samples, "P5 has no value at all");
     assert_eq!((samples.warnings.len(), samples.notes.len()), (5, 0), "{samples:?}");
     assert!(samples.faults.iter().all(String::is_empty));
 }

@@ -205,19 +205,25 @@ fn slopes_are_those_of_differences() {
     }
 }
 
+/// A network of one input and one target, with these weights of its nodes.
+fn narrow(weights: Array2<f64>, [centre, scale, target_scale]: [f64; 3]) -> Result<Network, ModelFault> {
+    let nodes = weights.nrows();
+    Network::new(
+        vec![centre],
+        vec![scale],
+        weights,
+        vec![0.0; nodes],
+        Array2::ones((1, nodes)),
+        vec![0.0],
+        vec![0.0],
+        vec![target_scale],
+    )
+}
+
 #[test]
 fn extreme_scales_keep_their_digits() {
     let one = |size: f64| {
-        let model = Network::new(
-            vec![3.0 * size],
-            vec![size],
-            Array2::ones((1, 1)),
-            vec![0.0],
-            Array2::ones((1, 1)),
-            vec![0.0],
-            vec![0.0],
-            vec![size],
-        );
+        let model = narrow(Array2::ones((1, 1)), [3.0 * size, size, size]);
         let mut out = [0.0];
         model.unwrap().predict_row(&[3.5 * size], &mut out);
         out[0] / size
@@ -230,16 +236,7 @@ fn extreme_scales_keep_their_digits() {
 #[test]
 fn numbers_that_are_no_model_are_refused() {
     let network = |nodes: usize, scale: f64, weight: f64, columns: usize| {
-        Network::new(
-            vec![0.0],
-            vec![scale],
-            Array2::from_elem((nodes, columns), weight),
-            vec![0.0; nodes],
-            Array2::ones((1, nodes)),
-            vec![0.0],
-            vec![0.0],
-            vec![1.0],
-        )
+        narrow(Array2::from_elem((nodes, columns), weight), [0.0, scale, 1.0])
     };
     assert!(network(1, 1.0, 1.0, 1).is_ok());
     assert_eq!(network(1, 0.0, 1.0, 1), Err(ModelFault::Number("scale")));

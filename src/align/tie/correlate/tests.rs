@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::*;
 
-/// Random motion without steps: sums of sines of random periods between `periods_s`.
-fn motion(rng: &mut ChaCha8Rng, periods_s: [f64; 2]) -> impl Fn(f64) -> f64 + use<> {
-    let waves: Vec<[f64; 3]> = (0..30)
+/// Random motion without steps: a sum of so many sines of random periods between 0.8 and 8 s.
+fn motion(rng: &mut ChaCha8Rng, waves: usize) -> impl Fn(f64) -> f64 + use<> {
+    let waves: Vec<[f64; 3]> = (0..waves)
         .map(|_| {
-            let period = (rng.random_range(periods_s[0].ln()..periods_s[1].ln())).exp();
+            let period = rng.random_range(0.8f64.ln()..8f64.ln()).exp();
             [rng.random_range(0.3..1.0), std::f64::consts::TAU / period, rng.random_range(0.0..std::f64::consts::TAU)]
         })
         .collect();
@@ -78,7 +78,7 @@ fn the_lag_of_related_signals_is_found() {
     let mut within = 0;
     for seed in 0..10 {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let angle = motion(&mut rng, [0.8, 8.0]);
+        let angle = motion(&mut rng, 30);
         // The log begins before the video and ends after it, or the other way round.
         let (seconds, starts_s) = if seed % 2 == 0 { ([30.0, 60.0], -10.0) } else { ([60.0, 40.0], 15.0) };
         let mut both = Both::new(seed, [&angle, &angle], seconds, 25.0, starts_s);
@@ -107,14 +107,7 @@ fn the_lag_of_related_signals_is_found() {
 fn smooth(rng: &mut ChaCha8Rng, kind: usize, hz: f64, seconds: f64) -> Vec<f64> {
     let count = (hz * seconds) as usize;
     if kind < 2 {
-        let waves: Vec<[f64; 3]> = (0..[3, 30][kind])
-            .map(|_| {
-                let period_s = rng.random_range(0.8f64.ln()..8f64.ln()).exp();
-                let turn = std::f64::consts::TAU;
-                [rng.random_range(0.3..1.0), turn / period_s, rng.random_range(0.0..turn)]
-            })
-            .collect();
-        let at = |t: f64| waves.iter().map(|[a, w, p]| a * (w * t + p).sin()).sum();
+        let at = motion(rng, [3, 30][kind]);
         return (0..count).map(|k| at(k as f64 / hz)).collect();
     }
     let (mut drive, mut value, mut next_s) = (0.0, 0.0, 0.0);
@@ -186,7 +179,7 @@ fn a_motion_that_repeats_itself_is_refused_unless_the_lag_is_nearly_known() {
 #[test]
 fn what_is_too_short_or_constant_or_apart_is_refused() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let angle = motion(&mut rng, [0.8, 8.0]);
+    let angle = motion(&mut rng, 30);
     let short = Both::new(1, [&angle, &angle], [4.0, 60.0], 25.0, -10.0);
     assert!(short.correlate(LagSearch::default()).unwrap_err().contains("too short"));
     let mut constant = Both::new(1, [&angle, &angle], [30.0, 60.0], 25.0, -10.0);
@@ -201,7 +194,7 @@ fn what_is_too_short_or_constant_or_apart_is_refused() {
 #[test]
 fn the_same_numbers_give_the_same_lag_whatever_the_threads() {
     let mut rng = ChaCha8Rng::seed_from_u64(8);
-    let angle = motion(&mut rng, [0.8, 8.0]);
+    let angle = motion(&mut rng, 30);
     let both = Both::new(8, [&angle, &angle], [30.0, 60.0], 25.0, -10.0);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -216,7 +209,7 @@ const LONG_S: f64 = 2e-3;
 #[test]
 fn an_hour_of_log_is_searched_with_few_rows() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let angle = motion(&mut rng, [0.8, 8.0]);
+    let angle = motion(&mut rng, 30);
     let both = Both::new(3, [&angle, &angle], [300.0, 3600.0], 25.0, -1500.0);
     let found = both.correlate(LagSearch::default()).unwrap();
     assert!((found.offset_s - OFFSET_S).abs() <= LONG_S, "{found:?}");
