@@ -122,12 +122,6 @@ fn no_channel_is_favoured_where_all_have_the_same_contrast() {
         dir.photo(&format!("set/s{subject}"), equal_contrast(contrast, [0.02, 0.3, 0.02], rng), drawn_labels());
     }
     let report = dir.lunula(&["photos", "set", "--out", "out", "--channels", "--json"]).expect(0).json();
-    for row in dir.table("out/channels.csv") {
-        let contrast = number(&row, "contrast");
-        // Over 8 subjects of 240 cells each way, of 3 pixels each: a standard error of 0.003 in green.
-        let most = if row["channel"] == "green" { 0.009 } else { 0.001 };
-        assert!((contrast - 0.0775).abs() <= most, "{row:?}");
-    }
     for difference in report["channels"]["differences"].list() {
         let [low, high] = ["low", "high"].map(|end| difference["difference"][end].number());
         assert!(low <= 0.0 && 0.0 <= high, "{difference}");

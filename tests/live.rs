@@ -287,11 +287,7 @@ fn bad_sources_are_said_with_what_to_do() {
     live("nowhere.csv", &["nowhere.csv: does not exist"]);
     live("tcp:127.0.0.1:1", &["tcp:127.0.0.1:1: refuses", "start the device"]);
     live("serial:/dev/ttyX?bd=3", &["there is no `bd` here"]);
-    live("serial:/dev/ttyX?baud=x", &["no number of bits in a second"]);
-    live("tcp:host", &["is no HOST:PORT"]);
-    live("r.csv?rate=0", &["`rate=0`: write a number above zero"]);
     live("lsl:name=x", &["lsl"]);
-    live("", &["it names nothing"]);
     // Counts where volts are needed; a wrong baud rate; other columns than the model's.
     let counts: String = (0..40).map(|k| format!("{k},{}\n", 6553 + k)).collect();
     dir.write("counts.csv", format!("time_s,P1\n{counts}"));
@@ -481,7 +477,7 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     };
     dir.write("good.csv", recording(20.0));
     dir.write("copy.csv", recording(20.0));
-    let good = judge(&dir, "good.csv", &[]).expect(0).never_says("warning").never_says("not known");
+    judge(&dir, "good.csv", &[]).expect(0).never_says("warning").never_says("not known");
     judge(&dir, "good.csv", &["copy.csv"]).expect(0).says("good.csv, copy.csv: the same to the byte");
     judge(&dir, "train.csv", &[]).expect(0).says("train.csv: the model was trained on this");
     judge(&dir, "good.csv", &["--ambient", "interpolated", "--stream", "x"])

@@ -1,7 +1,6 @@
 //! `lunula nailvideo` on generated videos: motion, photodiodes and presses against exact truth, and what is refused.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use lunula::video::{Encoder, Encoding, Format, Item, Picture, Plane, Turn, Video};

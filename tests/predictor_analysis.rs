@@ -167,16 +167,11 @@ fn every_subset_is_compared_and_the_best_of_each_size_reported() {
         dir.text("pr/subsets.csv").lines().next(),
         Some("photodiodes,inputs,rank,Fz_N_train_rmse,Fz_N_validate_rmse,score")
     );
-    for names in ["P2", "P1 P4", "P2 P3 P4"] {
-        let row = rows.iter().find(|row| row["inputs"] == names).unwrap();
-        let comma = names.replace(' ', ",");
-        let model = dir
-            .train("a.csv", "Fz_N", "m.json", &["--inputs", &comma, "--validate", "b.csv", "--json"])
-            .expect(0)
-            .json();
-        for (column, part) in [("Fz_N_train_rmse", "training"), ("Fz_N_validate_rmse", "validation")] {
-            near(&[row[column].parse().unwrap()], &[model[part]["rmse"]["Fz_N"].number()], 1e-12);
-        }
+    let row = rows.iter().find(|row| row["inputs"] == "P1 P4").unwrap();
+    let more = ["--inputs", "P1,P4", "--validate", "b.csv", "--json"];
+    let model = dir.train("a.csv", "Fz_N", "m.json", &more).expect(0).json();
+    for (column, part) in [("Fz_N_train_rmse", "training"), ("Fz_N_validate_rmse", "validation")] {
+        near(&[row[column].parse().unwrap()], &[model[part]["rmse"]["Fz_N"].number()], 1e-12);
     }
     let found = dir.bytes_of("pr");
     let names: Vec<&str> = found.keys().map(String::as_str).collect();

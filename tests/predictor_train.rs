@@ -340,7 +340,6 @@ fn chosen_photodiodes_and_targets() {
     let units: Vec<String> =
         dir.parsed("m.json")["targets"].list().iter().map(|one| one["unit"].words().to_owned()).collect();
     assert_eq!(units, ["N", "deg"]);
-    dir.train("train.csv", "Fz_N", "m.json", &["--inputs", "P1,P1"]).expect(2).says("P1");
     dir.train("train.csv", "Fz_N", "m.json", &["--inputs", "P1,Fz_N"]).expect(2).says("Fz_N");
     dir.train("train.csv", "Fz_N,", "m.json", &[]).expect(2).says("force, posture or columns");
 }

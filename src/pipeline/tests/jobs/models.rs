@@ -138,10 +138,11 @@ impl Place {
 
 /// Every file that was made.
 fn within(place: &Place, made: &[(String, Vec<String>)]) -> BTreeMap<String, Vec<u8>> {
-    let named = |out: &String| {
-        bytes_below(&place.path(out)).into_iter().map(move |(name, bytes)| (out.clone() + "/" + &name, bytes))
-    };
-    made.iter().flat_map(|(out, _)| named(out).collect::<Vec<_>>()).collect()
+    let mut all = BTreeMap::new();
+    for (out, _) in made {
+        all.extend(bytes_below(&place.path(out)).into_iter().map(|(name, bytes)| (format!("{out}/{name}"), bytes)));
+    }
+    all
 }
 
 #[test]
