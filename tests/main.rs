@@ -57,7 +57,6 @@ mod predictor_train;
 mod prompt;
 mod prompt_clock;
 mod simulate;
-mod simulate_extremes;
 mod skill;
 mod stdout;
 mod trajectory;

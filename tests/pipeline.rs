@@ -46,41 +46,6 @@ fn a_plan_writes_nothing_and_is_the_same_before_and_after_but_for_what_stands() 
 }
 
 #[test]
-fn what_is_up_to_date_is_kept_and_only_changes_are_made_again() {
-    let dir = Dir::new();
-    dir.words("phantom photos --seed 5 --subjects 3 --poses normal --out set --quiet").expect(0);
-    dir.write("p.toml", without_phantom(COLORATION).replace("{phantom}/photos/photos", "set/photos"));
-    let run = || dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(0).json();
-    let first = run();
-    assert_eq!((first["done"].as_u64(), first["kept"].as_u64()), (Some(4), Some(0)), "{first}");
-    let made = dir.results_of("out");
-    let second = run();
-    assert_eq!((second["done"].as_u64(), second["kept"].as_u64()), (Some(0), Some(4)), "{second}");
-    assert_eq!(dir.results_of("out"), made);
-    // One more subject touches that subject and the sums.
-    let one = fs::read_dir(dir.path("set/photos/normal"))
-        .unwrap()
-        .map(|e| e.unwrap().path())
-        .find(|p| p.extension().is_some_and(|e| e == "png"))
-        .unwrap();
-    fs::copy(&one, one.with_file_name("new.png")).unwrap();
-    fs::copy(one.with_extension("json"), one.with_file_name("new.json")).unwrap();
-    let third = run();
-    assert_eq!((third["done"].as_u64(), third["kept"].as_u64()), (Some(2), Some(3)), "{third}");
-}
-
-#[test]
-fn results_are_the_same_for_any_threads_and_any_folder() {
-    let dir = Dir::new();
-    dir.write("p.toml", touch());
-    dir.lunula(&["run", "p.toml", "--out", "one", "--threads", "1", "--quiet"]).expect(0);
-    dir.lunula(&["run", "p.toml", "--out", "deep/er/four", "--threads", "4", "--quiet"]).expect(0);
-    let one = dir.results_of("one");
-    assert!(one.keys().any(|name| name == "force/b/model.json"), "{:?}", one.keys());
-    assert!(one == dir.results_of("deep/er/four"));
-}
-
-#[test]
 fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
     let dir = Dir::new();
     dir.words("phantom log --seed 1 --protocol touch --seconds 20 --out a --quiet").expect(0);

@@ -8,8 +8,11 @@ use super::super::{Input, MergeFault, Parts, PipelineMark, RunFault, RunOptions,
 use super::super::{Results, RunReport, RunWatch};
 use super::toys::{Act, Diary, Toy, from_scratch, given, mark, options, outcomes, result, results, run_with, toy};
 
-/// One shared, four of parts 0 to 3, one that gathers.
-fn tasks(dir: &Path) -> Vec<Task> {
+/// A folder with what is given, and tasks: one shared, four of parts 0 to 3, one that gathers.
+fn bench() -> (tempfile::TempDir, Vec<Task>) {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    fs::write(dir.join("x.txt"), "x").unwrap();
     let diary = Diary::default();
     let mut tasks = vec![Task { share: Share::Each, ..toy("shared", 1, vec![given(dir, "x.txt")], &diary) }];
     for k in 0..4 {
@@ -18,7 +21,7 @@ fn tasks(dir: &Path) -> Vec<Task> {
     }
     let all = (0..4).map(|k| Input { may_fail: true, ..result(&format!("own/{k}"), "") }).collect();
     tasks.push(toy("all", 1, all, &diary));
-    tasks
+    (folder, tasks)
 }
 
 fn part(tasks: &[Task], dir: &Path, index: usize, of: usize) -> PathBuf {
@@ -36,9 +39,7 @@ fn merge(parts: &[PathBuf], tasks: &[Task], pipeline: &PipelineMark, out: &Path)
 
 #[test]
 fn a_part_does_its_own_and_what_that_needs() {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("x.txt"), "x").unwrap();
-    let tasks = tasks(dir.path());
+    let (dir, tasks) = bench();
     let out = dir.path().join("part");
     let report = run_with(&tasks, &out, &RunOptions { shard: Shard::new(2, 3), ..options(2) });
     assert_eq!(outcomes(&report), ["done", "elsewhere", "done", "elsewhere", "elsewhere", "elsewhere"]);
@@ -61,9 +62,7 @@ fn parts_are_written_i_of_n() {
 
 #[test]
 fn a_merge_is_made_again_with_what_is_new() {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("x.txt"), "x").unwrap();
-    let tasks = tasks(dir.path());
+    let (dir, tasks) = bench();
     let parts = [part(&tasks, dir.path(), 2, 2), part(&tasks, dir.path(), 1, 2)];
     let out = dir.path().join("out");
     let report = merge(&parts, &tasks, &mark(), &out).unwrap();
@@ -79,9 +78,7 @@ fn a_merge_is_made_again_with_what_is_new() {
 
 #[test]
 fn a_failed_task_of_a_part_is_tried_again_by_the_merge() {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("x.txt"), "x").unwrap();
-    let mut tasks = tasks(dir.path());
+    let (dir, mut tasks) = bench();
     let mut broken = Toy { act: Act::Fail, ..Toy::default() }.task("own/1", vec![result("shared", "text.txt")]);
     broken.share = Share::Part(1);
     tasks[2] = broken;
@@ -97,9 +94,7 @@ fn a_failed_task_of_a_part_is_tried_again_by_the_merge() {
 
 #[test]
 fn what_does_not_belong_together_is_refused_and_nothing_written() {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("x.txt"), "x").unwrap();
-    let tasks = tasks(dir.path());
+    let (dir, tasks) = bench();
     let out = dir.path().join("out");
     let [one, two, three] = [1, 2, 3].map(|k| part(&tasks, dir.path(), k, 3));
     let fault = |parts: &[&PathBuf], pipeline: &PipelineMark| {
@@ -143,9 +138,7 @@ fn what_does_not_belong_together_is_refused_and_nothing_written() {
 
 #[test]
 fn parts_that_made_different_things_of_one_name_are_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("x.txt"), "x").unwrap();
-    let tasks = tasks(dir.path());
+    let (dir, tasks) = bench();
     let one = part(&tasks, dir.path(), 1, 2);
     fs::write(dir.path().join("x.txt"), "changed between the parts").unwrap();
     let two = part(&tasks, dir.path(), 2, 2);
