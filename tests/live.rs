@@ -563,7 +563,7 @@ fn a_sensor_that_repeats_its_last_sample_is_said_by_switch_and_live() {
         dir.words(&format!("switch evaluate sw.toml {name} {options} --out ev-{name}")).expect(0)
     };
     for said in [live("good.csv"), judged("good.csv")] {
-        assert!(!said.stderr.contains("keep(s) all values"), "{}", said.stderr);
+        said.never_says("keep(s) all values");
     }
     let dead = |t_s: f64, light: f64, force: f64| format!("{t_s},{light},0.4,{force}\n");
     dir.write("dead.csv", altered(20.0, names, dead));
@@ -612,8 +612,7 @@ fn a_goal_that_is_missed_on_recordings_held_out_is_said() {
     dir.write("restless.csv", altered(120.0, "time_s,P1,Fz_N", restless));
     let tune = ["switch", "tune", "calm.csv", "restless.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
     let said = dir.lunula(&[&tune[..], &["--false-per-hour", "60", "--out", "s.toml"]].concat()).expect(0);
-    let said = said.says("the goal is missed on recordings that are held out: ");
-    assert!(!said.stderr.contains("more recordings would show it"), "{}", said.stderr);
+    said.says("the goal is missed on recordings that are held out: ").never_says("more recordings would show it");
 }
 
 #[test]

@@ -66,49 +66,6 @@ fn a_dead_photodiode_is_named_and_gets_nothing() {
 }
 
 #[test]
-fn a_nearly_collinear_photodiode_is_fitted_with_a_warning() {
-    let base = Recording::of(0..120);
-    let p2 = base.numbers("P2");
-    // P5 is P2 and a trace of its own.
-    let dir = dir_with(&base.map("P5", |row, v| p2[row] + 2f64.powi(-30) * (v - 2.0)));
-    let answer = dir.train("a.csv", "force", "m.json", &["--json"]).expect(0);
-    let report = answer.json();
-    answer.says("warning: P2 and P5 hardly differ");
-    let fit = &report["fit"]["least_squares"];
-    assert_eq!(fit["rank"], 8);
-    assert!(fit["digits"].number() < 8.0 && fit["condition"].number() > 1e8, "{fit}");
-}
-
-#[test]
-fn one_row_more_than_terms_leaves_nothing_to_judge_them_by() {
-    let dir = dir_with(&Recording::of(0..9));
-    let (jacobian, fit) = fitted(&dir, "refuse");
-    for (t, row) in jacobian.iter().enumerate() {
-        near(row, &slopes(t), 1e-12);
-    }
-    assert!(fit["warnings"].to_string().contains("9 rows determine the terms exactly"), "{fit}");
-    assert_eq!(fit["residual_sd"], serde_json::json!([null, null, null]));
-    dir.recording("a.csv", &Recording::of(0..8));
-    dir.train("a.csv", "force", "m.json", &[]).expect(2).says("8 terms need at least 9 rows; there are 8");
-}
-
-#[test]
-fn one_row_tells_its_own_values() {
-    let one = Recording::of(0..1);
-    let force: f64 = one.rows[0][11].parse().unwrap();
-    let dir = dir_with(&one);
-    dir.recording("other.csv", &Recording::of(50..60));
-    let network = ["--model", "network", "--restarts", "1", "--epochs", "3"];
-    for how in [&["--deficient", "minimum-norm"][..], &["--deficient", "drop"], &["--deficient", "ridge=0.1"], &network]
-    {
-        dir.train("a.csv", "force", "m.json", how).expect(0);
-        dir.lunula(&["predict", "m.json", "other.csv", "--out", "p.csv", "-q"]).expect(0);
-        let said = dir.table("p.csv");
-        assert!(said.len() == 10 && said.iter().all(|row| row["Fz_N"].parse::<f64>().unwrap() == force), "{how:?}");
-    }
-}
-
-#[test]
 fn a_force_that_is_cut_off_is_reported() {
     let whole = Recording::of(0..120);
     let mut fz_n = whole.numbers("Fz_N");
