@@ -87,14 +87,10 @@ fn the_extra_trajectory_is_a_protocol_that_fills_holes() {
 fn what_is_wrong_with_a_request_is_said_before_anything_is_written() {
     let dir = Dir::new();
     dir.write("bad.toml", "[[step]]\nkind = \"spirall\"\n");
-    dir.write("r.csv", "time_s,P1\n0,1\n");
     let prompt = |arguments: &[&str]| dir.lunula(&[&["prompt"], arguments].concat()).expect(2);
     prompt(&["bad.toml", "--simulate", "--out", "o.csv"]).says("bad.toml:2: unknown kind of step `spirall`");
     prompt(&["none.toml", "--simulate", "--out", "o.csv"]).says("--write-protocol");
-    prompt(&["--source", "r.csv", "--out", "o.csv"]).says("a recording follows no prompt");
-    prompt(&["--source", "phantom:touch", "--out", "o.csv"]).says("phantom:subject does");
     prompt(&["--out", "o.csv"]).says("--source is needed");
-    prompt(&["--simulate", "--out", "o.parquet"]).says("let its name end in .csv");
     prompt(&["bad.toml", "--simulate", "--source", "-", "--out", "o.csv"]).says("cannot be used with");
     prompt(&["--simulate"]).says("--out");
     // A check that can't pass: nothing is collected, and why is said.

@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::super::{Event, GraphFault, Input, Outcome, Results, RunFault, RunWatch, Standing, Why, run, survey};
 use super::toys::{
-    Act, Diary, Toy, from_scratch, given, left_at_work, options, outcomes, ran, result, results, run_on, toy,
+    Act, Diary, Toy, folder_and_diary, from_scratch, given, left_at_work, options, outcomes, ran, result, results,
+    run_on, toy,
 };
 use crate::job::{Made, Maker, Work};
 
@@ -16,8 +17,7 @@ fn failing(id: &str, act: Act, diary: &Diary) -> super::super::Task {
 
 #[test]
 fn a_branch_fails_alone_and_is_tried_again() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks = |act: Act| {
         [
             failing("a/1", act, &diary),
@@ -53,8 +53,7 @@ fn a_branch_fails_alone_and_is_tried_again() {
 
 #[test]
 fn a_task_whose_gathered_inputs_all_failed_says_so() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks =
         [failing("a", Act::Fail, &diary), toy("b", 1, vec![Input { may_fail: true, ..result("a", "") }], &diary)];
     let report = run_on(&tasks, dir.path());
@@ -75,8 +74,7 @@ fn a_failure_is_forgotten_where_the_inputs_are_again_what_they_were() {
 
 #[test]
 fn what_stood_before_a_failure_stands() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     run_on(&[toy("a", 0, vec![], &diary)], dir.path());
     let made = results(dir.path());
     let broken = Toy { salt: 1, act: Act::Fail, ..Toy::default() }.task("a", vec![]);
@@ -87,8 +85,7 @@ fn what_stood_before_a_failure_stands() {
 
 #[test]
 fn missing_inputs_and_names_are_told() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks = [
         toy("a", 1, vec![given(dir.path(), "no.txt")], &diary),
         toy("b", 1, vec![], &diary),
@@ -123,8 +120,7 @@ fn an_input_that_changes_as_it_is_worked_on_fails_the_task() {
 
 #[test]
 fn a_stopped_run_leaves_nothing_half_and_goes_on_later() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks = |act: Act| {
         [
             toy("a", 1, vec![], &diary),
@@ -162,8 +158,7 @@ type Named<'a> = (&'a str, &'a [&'a str]);
 
 #[test]
 fn tasks_that_make_no_sense_leave_no_folder() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let toys = |list: &[Named]| -> Vec<super::super::Task> {
         let inputs = |needs: &[&str]| needs.iter().map(|needed| result(needed, "")).collect();
         list.iter().map(|(id, needs)| toy(id, 1, inputs(needs), &diary)).collect()

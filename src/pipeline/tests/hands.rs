@@ -4,7 +4,8 @@ use std::fs;
 
 use super::super::{Source, Standing, Why, survey};
 use super::toys::{
-    Diary, Toy, from_scratch, given, left_at_work, options, outcomes, ran, result, results, run_on, run_with, toy,
+    Diary, Toy, folder_and_diary, from_scratch, given, left_at_work, options, outcomes, ran, result, results, run_on,
+    run_with, toy,
 };
 use crate::job::{Made, Maker, Work};
 
@@ -55,8 +56,7 @@ fn nothing_is_done_twice_and_a_survey_tells_why_something_is() {
 
 #[test]
 fn an_edited_result_is_kept_beside_and_made_anew_a_deleted_one_made_anew() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks = [toy("a", 1, vec![], &diary), toy("b", 1, vec![result("a", "")], &diary)];
     run_on(&tasks, dir.path());
     let made = results(dir.path());
@@ -101,8 +101,7 @@ fn a_file_where_results_belong_is_named_and_left() {
 
 #[test]
 fn an_edit_is_kept_even_where_the_task_changed_too() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     run_on(&[toy("a", 1, vec![], &diary)], dir.path());
     fs::write(dir.path().join("a/text.txt"), "mine").unwrap();
     let report = run_on(&[toy("a", 2, vec![], &diary)], dir.path());
@@ -112,8 +111,7 @@ fn an_edit_is_kept_even_where_the_task_changed_too() {
 
 #[test]
 fn what_is_no_result_is_left_told_and_not_shown_to_jobs() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks =
         |salt| [toy("a", 1, vec![], &diary), toy("b", salt, vec![result("a", ""), result("a", "deep")], &diary)];
     run_on(&tasks(1), dir.path());
@@ -143,8 +141,7 @@ fn what_is_made_no_more_is_removed_unless_somebody_edited_it() {
 
 #[test]
 fn a_task_of_before_is_told_and_makes_room_only_where_it_is_in_the_way() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     run_on(&[toy("a", 1, vec![], &diary), toy("b", 1, vec![], &diary)], dir.path());
     let now = [toy("a/deep", 1, vec![], &diary)];
     let report = run_on(&now, dir.path());
@@ -177,8 +174,7 @@ fn a_given_folder_is_all_that_is_in_it() {
 
 #[test]
 fn an_unreadable_record_counts_as_none() {
-    let dir = tempfile::tempdir().unwrap();
-    let diary = Diary::default();
+    let (dir, diary) = folder_and_diary();
     let tasks = [toy("a", 1, vec![], &diary)];
     run_on(&tasks, dir.path());
     for entry in fs::read_dir(dir.path().join(".lunula/records")).unwrap() {

@@ -41,6 +41,10 @@ pub(super) struct Toy {
 /// Which toys ran, and with how many threads.
 pub(super) type Diary = Arc<Mutex<Vec<(String, usize)>>>;
 
+pub(super) fn folder_and_diary() -> (tempfile::TempDir, Diary) {
+    (tempfile::tempdir().unwrap(), Diary::default())
+}
+
 pub(super) fn ran(diary: &Diary) -> Vec<String> {
     let mut ran: Vec<String> = diary.lock().unwrap().drain(..).map(|(id, _)| id).collect();
     ran.sort();
