@@ -175,7 +175,7 @@ impl Dir {
         found
     }
 
-    /// The results of a command line, which puts them into the folder `{out}`: the same bytes on one thread and on four.
+    /// The results of a command line that puts them into the folder `{out}`: the same bytes on one thread and on four.
     #[track_caller]
     pub fn on_any_threads(&self, line: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
         for (out, threads) in [("one", 1), ("four", 4)] {
