@@ -597,7 +597,7 @@ fn bad_options_are_refused_all_at_once() {
         .says("no marker of this name; there are hand_prox, hand_dist")
         .says("the video has frames 0 to 299")
         .says("--noise 500: choose 0 to 128");
-    run(&["--seconds", "0.01"]).says("less than a frame");
+    run(&["--seconds", "0.01", "--hide", "hand_prox@0+1"]).says("less than a frame").says("the video has no frames");
     run(&["--clock", "mm:xx"]).says("only h, m, s, t");
     run(&["--clock", "mm:ss", "--clock-roi", "1200,40,300,70"]).says("--clock-roi 1200,40,300,70: not within 1280x720");
     run(&["--distortion", "-2,1"]).says("folds over");

@@ -44,20 +44,21 @@ impl VideoOptions {
             && finger.half_widths_px.len() >= parts.half_widths_px.len();
         faults.need(whole, || "--layout: this finger has no thumb; start from one of this layout".to_owned());
         let names = self.finger.layout.names();
+        let frames = self.frames();
+        let beyond = |text: &str| match frames.checked_sub(1) {
+            Some(last) => format!("{text}: the video has frames 0 to {last}"),
+            None => format!("{text}: the video has no frames"),
+        };
         for hide in &self.hide {
-            let (text, frames) = (format!("--hide {}@{}+{}", hide.marker, hide.frame, hide.frames), self.frames());
+            let text = format!("--hide {}@{}+{}", hide.marker, hide.frame, hide.frames);
             faults.need(names.contains(&hide.marker), || {
                 format!("{text}: no marker of this name; there are {}", names.join(", "))
             });
-            faults.need(hide.frames > 0 && hide.frame < frames, || {
-                format!("{text}: the video has frames 0 to {}", frames - 1)
-            });
+            faults.need(hide.frames > 0 && hide.frame < frames, || beyond(&text));
         }
         if let Some(leave) = self.leave {
-            let (text, frames) = (format!("--leave {}+{}", leave.frame, leave.frames), self.frames());
-            faults.need(leave.frames > 0 && leave.frame < frames, || {
-                format!("{text}: the video has frames 0 to {}", frames - 1)
-            });
+            let text = format!("--leave {}+{}", leave.frame, leave.frames);
+            faults.need(leave.frames > 0 && leave.frame < frames, || beyond(&text));
         }
         let known: Vec<&str> = self.finger.layout.joints().into_iter().map(|(joint, _)| joint).collect();
         for joint in &self.joints {
@@ -72,7 +73,6 @@ impl VideoOptions {
             if let Some(hz) = clock.refresh_hz {
                 faults.need(hz.is_finite() && hz > 0.0, || format!("--clock-refresh {hz}: choose more than 0 Hz"));
             }
-            let frames = self.frames();
             let hidden = self
                 .screen
                 .hide
@@ -84,7 +84,7 @@ impl VideoOptions {
                     (format!("--clock-jump {frame}{by_s:+}"), frame < frames && by_s.abs() < 1e9)
                 });
             for (text, holds) in hidden.chain(stops).chain(jumps) {
-                faults.need(holds, || format!("{text}: the video has frames 0 to {}", frames - 1));
+                faults.need(holds, || beyond(&text));
             }
             faults.need(clock.offset_s.is_finite() && clock.offset_s.abs() < 1e9, || {
                 format!("--clock-offset {}: choose seconds within a thousand million", clock.offset_s)
