@@ -1,5 +1,6 @@
 //! Choices by a word.
 
+pub use lunula_hemodynamics::LoadPath as Pressed;
 use lunula_hemodynamics::{Calibration, Collapse, Optics, Parameters};
 use serde::{Serialize, Serializer};
 
@@ -54,6 +55,11 @@ impl Serialize for OpticsChoice {
 impl Words for Collapse {
     const WORDS: &'static [(Self, &'static str, &'static str)] =
         &[(Self::Error, "error", ""), (Self::Contact, "contact", "")];
+}
+
+impl Words for Pressed {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Proximal, "proximal", ""), (Self::Distal, "distal", ""), (Self::Both, "both", "")];
 }
 
 impl Words for Calibration {

@@ -41,6 +41,11 @@ pub enum HemodynamicsError {
 }
 
 impl HemodynamicsError {
+    /// Why the model has no answer.
+    pub(super) fn model(why: impl Display) -> Self {
+        Self::Model(why.to_string())
+    }
+
     /// What is wrong with a table as a whole.
     pub(super) fn table(path: &Path, what: impl Display) -> Self {
         Self::Rows(vec![format!("{}: {what}", path.display())])

@@ -19,10 +19,8 @@ pub mod solve;
 pub use lunula_hemodynamics as model;
 use lunula_hemodynamics::Parameters;
 
-pub use choices::OpticsChoice;
-pub use curve::{
-    CurveFigures, CurveOptions, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, Pressed, curve, curve_plan,
-};
+pub use choices::{OpticsChoice, Pressed};
+pub use curve::{CurveFigures, CurveOptions, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, curve, curve_plan};
 pub use error::HemodynamicsError;
 pub use fit::{
     Between, FitFigures, FitInputs, FitOptions, FitReport, FittedGroup, FittedPhotodiode, PhotodiodeColumn,
@@ -31,7 +29,7 @@ pub use fit::{
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use response::Response;
 pub use simulate::{
-    Collapsed, SimulateFigures, SimulateInputs, SimulateOptions, SimulateReport, Work, simulate, simulate_plan,
+    Collapsed, SimulateFigures, SimulateInputs, SimulateOptions, SimulateReport, simulate, simulate_plan,
 };
 pub use solve::{Run, RunSettings, respond};
 

@@ -36,7 +36,7 @@ pub use model::{Arrow, Collapse, Matrices, Model, Pressures, Printed, PrintedFau
 pub use optics::{Optics, OpticsFault, Photodiodes};
 pub use parameters::{ParameterFault, Parameters, Site, Symbol, Unit, Vessel};
 pub use state::{State, StateFault};
-pub use transient::{Order, SolveFault, SolveOptions, Solver, Statistics, Stopped, Trajectory, simulate};
+pub use transient::{Order, SolveFault, SolveOptions, Solver, Statistics, Trajectory, simulate};
 
 /// The example of the README, run as a test.
 #[cfg(doctest)]

@@ -109,7 +109,7 @@ pub fn curve(
         units,
         load: range.pressed,
         range: range.loads,
-        collapse: model.collapse.name(),
+        collapse: model.collapse.word(),
         optics: model.optics,
         loads: loads_pa.len(),
         with_one: with(|count| count == 1),

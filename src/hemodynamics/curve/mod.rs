@@ -8,5 +8,5 @@ mod report;
 mod table;
 
 pub use job::{curve, plan as curve_plan};
-pub use options::{CurveOptions, CurveRange, LoadRange, Pressed};
+pub use options::{CurveOptions, CurveRange, LoadRange};
 pub use report::{CurveFigures, CurvePoint, CurveReport, Fold};

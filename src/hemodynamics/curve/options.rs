@@ -3,53 +3,12 @@
 use std::str::FromStr;
 
 use clap::Args;
-use lunula_hemodynamics::LoadPath;
 use serde::Serialize;
 
+use crate::hemodynamics::choices::Pressed;
 use crate::hemodynamics::given::{BloodOptions, ModelOptions};
 use crate::hemodynamics::grid::{multiple, multiples_within};
 use crate::job::one_of;
-use crate::words::Words;
-
-/// What a load presses on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Pressed {
-    /// `P_F1`.
-    Proximal,
-    /// `P_F2`.
-    Distal,
-    /// `P_F1` and `P_F2` alike.
-    #[default]
-    Both,
-}
-
-impl Pressed {
-    /// `[P_F1, P_F2]` of a load.
-    #[must_use]
-    pub fn of(self, load_pa: f64) -> [f64; 2] {
-        match self {
-            Self::Proximal => [load_pa, 0.0],
-            Self::Distal => [0.0, load_pa],
-            Self::Both => [load_pa, load_pa],
-        }
-    }
-
-    /// As the crate calls it.
-    #[must_use]
-    pub fn path(self) -> LoadPath {
-        match self {
-            Self::Proximal => LoadPath::Proximal,
-            Self::Distal => LoadPath::Distal,
-            Self::Both => LoadPath::Both,
-        }
-    }
-}
-
-impl Words for Pressed {
-    const WORDS: &'static [(Self, &'static str, &'static str)] =
-        &[(Self::Proximal, "proximal", ""), (Self::Distal, "distal", ""), (Self::Both, "both", "")];
-}
 
 /// Loads from one to another by steps, Pa; the last is left out where the steps don't meet it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{LoadRange, Pressed};
-use crate::hemodynamics::choices::OpticsChoice;
+use super::LoadRange;
+use crate::hemodynamics::choices::{OpticsChoice, Pressed};
 use crate::job::Report;
 
 /// An equilibrium, or that there is none.

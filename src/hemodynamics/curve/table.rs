@@ -4,8 +4,9 @@ use std::path::Path;
 
 use lunula_hemodynamics::Parameters;
 
-use super::{CurvePoint, Pressed};
+use super::CurvePoint;
 use crate::hemodynamics::HemodynamicsError;
+use crate::hemodynamics::choices::Pressed;
 use crate::hemodynamics::given::state_columns;
 use crate::table::{Column, TableWriter, Value};
 

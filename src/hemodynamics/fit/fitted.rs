@@ -32,12 +32,7 @@ pub fn voltages(
     let traces = &recording.photodiodes;
     match &recording.course {
         Course::Transient { times_s, proximal, distal, upstream, downstream } => {
-            let mut loads = Loads::on(parameters, proximal.clone(), distal.clone());
-            for (given, place) in [(upstream, &mut loads.upstream), (downstream, &mut loads.downstream)] {
-                if let Some(load) = given {
-                    *place = load.clone();
-                }
-            }
+            let loads = Loads::on(parameters, proximal.clone(), distal.clone()).with_blood(upstream, downstream);
             let from_s = times_s[0];
             let start = state_before(from_s, parameters, &loads, collapse)?;
             let settings = RunSettings { collapse, rtol: RTOL, optics: optics.clone(), from_s };
@@ -48,15 +43,13 @@ pub fn voltages(
             Ok(traces.iter().map(|trace| run.response.photodiode_v(trace.unit)).collect())
         }
         Course::Static { proximal_pa, distal_pa } => {
-            let photodiodes =
-                Photodiodes::new(parameters, optics).map_err(|why| HemodynamicsError::Model(why.to_string()))?;
+            let photodiodes = Photodiodes::new(parameters, optics).map_err(HemodynamicsError::model)?;
             let model = Model::new(parameters, collapse);
             let mut at = rest(parameters)?.lumens;
             let mut voltages = vec![Vec::with_capacity(proximal_pa.len()); traces.len()];
             for (&proximal_pa, &distal_pa) in proximal_pa.iter().zip(distal_pa) {
-                let (upstream_pa, downstream_pa) = (parameters.upstream_pa(), parameters.downstream_pa());
-                let inputs = Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa };
-                let mut found = equilibria(&model, &inputs).map_err(|why| HemodynamicsError::Model(why.to_string()))?;
+                let inputs = Inputs { proximal_pa, distal_pa, ..Inputs::unloaded(parameters) };
+                let mut found = equilibria(&model, &inputs).map_err(HemodynamicsError::model)?;
                 found.retain(|one| one.stability != Stability::Unstable);
                 let distance = |lumens: &[f64]| lumens.iter().zip(&at).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 let nearest =

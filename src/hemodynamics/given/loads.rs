@@ -94,12 +94,7 @@ impl LoadOptions {
             notes = placed(&rows.notes());
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }
-        let BloodOptions { ph, pl } = &self.blood;
-        for (given, place) in [(ph, &mut loads.upstream), (pl, &mut loads.downstream)] {
-            if let Some(load) = given {
-                *place = load.clone();
-            }
-        }
+        let loads = loads.with_blood(&self.blood.ph, &self.blood.pl);
         if file.is_none() {
             let given = [&self.pf1, &self.pf2].map(|load| load.as_ref().map_or(Vec::new(), values));
             warnings.extend(hardly_pressed(&given.each_ref().map(Vec::as_slice)));

@@ -14,6 +14,7 @@ use crate::hemodynamics::{HemodynamicsError, Response, named};
 use crate::job::{Outputs, Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
+use crate::words::Words;
 
 /// The picture's name, after the table's.
 const PICTURE: &str = "response";
@@ -132,7 +133,7 @@ pub fn simulate(
             Some(Start::File(path)) => path.display().to_string(),
         },
         optics: model.optics,
-        collapse: model.collapse.name(),
+        collapse: model.collapse.word(),
         until_s: options.until_s,
         every_s: options.every_s,
         rtol: options.rtol,

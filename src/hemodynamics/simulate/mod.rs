@@ -8,4 +8,4 @@ mod table;
 
 pub use job::{plan as simulate_plan, simulate};
 pub use options::{SimulateInputs, SimulateOptions};
-pub use report::{Collapsed, SimulateFigures, SimulateReport, Work};
+pub use report::{Collapsed, SimulateFigures, SimulateReport};

@@ -2,30 +2,11 @@
 
 use std::path::PathBuf;
 
-use lunula_hemodynamics::Loads;
+use lunula_hemodynamics::{Loads, Statistics};
 use serde::Serialize;
 
 use crate::hemodynamics::choices::OpticsChoice;
 use crate::job::Report;
-
-/// What a solver did.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Work {
-    /// Stages of the method.
-    pub stages: u32,
-    /// Steps that were taken.
-    pub steps: u64,
-    /// Steps that were tried and not taken.
-    pub rejected: u64,
-    /// Evaluations of the equations, all walls at one state.
-    pub evaluations: u64,
-    /// Jacobians that were evaluated and factored.
-    pub factorizations: u64,
-    /// The smallest step, s; none where there was no step.
-    pub smallest_step_s: Option<f64>,
-    /// The largest step, s.
-    pub largest_step_s: Option<f64>,
-}
 
 /// A vessel that closed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -102,7 +83,7 @@ pub struct SimulateFigures {
     /// A vessel that closed, where a part of the table was to be kept.
     pub collapsed: Option<Collapsed>,
     /// What the solver did.
-    pub work: Work,
+    pub work: Statistics,
     /// The parameters, by their names in files.
     #[serde(serialize_with = "crate::hemodynamics::as_map")]
     pub parameters: Vec<(String, f64)>,

@@ -6,7 +6,8 @@ use lunula_hemodynamics::{
 };
 
 use crate::hemodynamics::HemodynamicsError;
-use crate::hemodynamics::curve::{CurvePoint, Fold, Pressed};
+use crate::hemodynamics::choices::Pressed;
+use crate::hemodynamics::curve::{CurvePoint, Fold};
 use crate::hemodynamics::given::{Start, read_state};
 
 /// The state of a fingertip that nothing presses.
@@ -14,12 +15,7 @@ use crate::hemodynamics::given::{Start, read_state};
 /// # Errors
 /// Parameters with which it does not rest, or not in one way.
 pub(in crate::hemodynamics) fn rest(parameters: &Parameters) -> Result<State, HemodynamicsError> {
-    let inputs = Inputs {
-        upstream_pa: parameters.upstream_pa(),
-        downstream_pa: parameters.downstream_pa(),
-        ..Inputs::default()
-    };
-    let found = at_rest(&Model::new(parameters, Collapse::Error), &inputs);
+    let found = at_rest(&Model::new(parameters, Collapse::Error), &Inputs::unloaded(parameters));
     Ok(found.map_err(|why| HemodynamicsError::Model(format!("at rest: {why}")))?.state)
 }
 
@@ -90,10 +86,9 @@ pub fn along(
     [upstream_pa, downstream_pa]: [f64; 2],
 ) -> Result<Curve, HemodynamicsError> {
     let model = Model::new(parameters, collapse);
-    let photodiodes = Photodiodes::new(parameters, optics).map_err(|why| HemodynamicsError::Model(why.to_string()))?;
+    let photodiodes = Photodiodes::new(parameters, optics).map_err(HemodynamicsError::model)?;
     let others = Inputs { upstream_pa, downstream_pa, ..Inputs::default() };
-    let found = load_curve(&model, &others, pressed.path(), loads_pa)
-        .map_err(|why| HemodynamicsError::Model(why.to_string()))?;
+    let found = load_curve(&model, &others, pressed, loads_pa).map_err(HemodynamicsError::model)?;
     let mut known = found.points.iter().peekable();
     let mut points = Vec::new();
     for &load_pa in loads_pa {

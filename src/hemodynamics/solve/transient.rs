@@ -5,7 +5,7 @@ use lunula_hemodynamics::{
     simulate,
 };
 
-use crate::hemodynamics::simulate::{Collapsed, Work};
+use crate::hemodynamics::simulate::Collapsed;
 use crate::hemodynamics::{HemodynamicsError, Response};
 
 /// How a run is solved.
@@ -27,7 +27,7 @@ pub struct Run {
     /// All rows, or those before a vessel closed.
     pub response: Response,
     /// What the solver did.
-    pub work: Work,
+    pub work: Statistics,
     /// The vessel that closed.
     pub collapsed: Option<Collapsed>,
 }
@@ -44,19 +44,18 @@ pub fn respond(
     settings: &RunSettings,
 ) -> Result<Run, HemodynamicsError> {
     let model = Model::new(parameters, settings.collapse);
-    let photodiodes =
-        Photodiodes::new(parameters, &settings.optics).map_err(|why| HemodynamicsError::Model(why.to_string()))?;
+    let photodiodes = Photodiodes::new(parameters, &settings.optics).map_err(HemodynamicsError::model)?;
     let options = SolveOptions { start_s: Some(settings.from_s), ..SolveOptions::at(settings.rtol) };
     let (trajectory, collapsed) = match simulate(&model, loads, start, times_s, &options) {
         Ok(trajectory) => (trajectory, None),
         Err(SolveFault::Collapsed { site, time_s, before }) => {
             (*before, Some(Collapsed { vessel: site.to_string(), time_s }))
         }
-        Err(why) => return Err(HemodynamicsError::Model(why.to_string())),
+        Err(why) => return Err(HemodynamicsError::model(why)),
     };
     Ok(Run {
         response: response(&trajectory, model.walls(), &photodiodes),
-        work: work(trajectory.statistics()),
+        work: trajectory.statistics().clone(),
         collapsed,
     })
 }
@@ -77,16 +76,4 @@ fn response(trajectory: &Trajectory, walls: usize, photodiodes: &Photodiodes) ->
     let volts = response.volts.chunks_exact_mut(walls - 1);
     volts.enumerate().for_each(|(row, volts)| photodiodes.voltages(trajectory.lumens(row), volts));
     response
-}
-
-fn work(statistics: &Statistics) -> Work {
-    Work {
-        stages: statistics.stages,
-        steps: statistics.steps,
-        rejected: statistics.rejected,
-        evaluations: statistics.evaluations,
-        factorizations: statistics.factorizations,
-        smallest_step_s: Some(statistics.smallest_step_s).filter(|step_s| step_s.is_finite()),
-        largest_step_s: Some(statistics.largest_step_s).filter(|step_s| *step_s > 0.0),
-    }
 }

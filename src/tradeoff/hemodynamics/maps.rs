@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::figure::{Chart, Item, draw_panels};
 use crate::files::Staging;
 use crate::table::{Column, TableWriter, Value};
+use crate::words::Words;
 
 /// A map: a parameter over a load.
 #[derive(Debug, Clone)]
@@ -40,17 +41,12 @@ pub fn stability() -> anyhow::Result<Vec<Map>> {
         ("k_V", vec![Symbol::Stiffness(Site::Vein)]),
         ("R_Vi", vec![Symbol::Venule(0), Symbol::Venule(1)]),
     ];
-    let paths = [("proximal", LoadPath::Proximal), ("distal", LoadPath::Distal), ("both", LoadPath::Both)];
     let loads_pa: Vec<f64> = (0..=LOADS).map(|k| LOAD_PA * f64::from(k)).collect();
     let factors: Vec<f64> = (0..=FACTORS).map(|k| 10_f64.powf(2.0 * f64::from(k) / f64::from(FACTORS) - 1.0)).collect();
-    let others = Inputs {
-        upstream_pa: parameters.upstream_pa(),
-        downstream_pa: parameters.downstream_pa(),
-        ..Inputs::default()
-    };
+    let others = Inputs::unloaded(&parameters);
     let mut maps = Vec::new();
     for (name, symbols) in varied {
-        for (pressed, path) in paths {
+        for &(path, pressed, _) in LoadPath::WORDS {
             let plan = MapPlan {
                 parameters: parameters.clone(),
                 symbols: symbols.clone(),

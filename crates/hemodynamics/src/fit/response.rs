@@ -2,7 +2,7 @@
 //! each coordinate.
 
 use super::recording::{Course, Recording};
-use crate::load::{Inputs, Load, Loads};
+use crate::load::{Inputs, Loads};
 use crate::model::{Model, Tangent};
 use crate::parameters::Parameters;
 use crate::sensitivity::{NoRest, Rest, Variation};
@@ -73,8 +73,7 @@ impl Responder {
         recording: &Recording,
     ) -> Result<Response, NoResponse> {
         let walls = model.walls();
-        let (upstream_pa, downstream_pa) = (parameters.upstream_pa(), parameters.downstream_pa());
-        let unloaded = Inputs { upstream_pa, downstream_pa, proximal_pa: 0.0, distal_pa: 0.0 };
+        let unloaded = Inputs::unloaded(parameters);
         let mut lumens = State::undisplaced(parameters).lumens;
         match &recording.course {
             Course::Static { proximal_pa, distal_pa } => {
@@ -99,17 +98,10 @@ impl Responder {
                 Ok(response)
             }
             Course::Transient { times_s, proximal, distal, upstream, downstream } => {
-                let mut loads = Loads::on(parameters, proximal.clone(), distal.clone());
-                let mut own = [false; 2];
-                let blood: [(&Option<Load>, &mut Load); 2] =
-                    [(upstream, &mut loads.upstream), (downstream, &mut loads.downstream)];
-                for (own, (measured, used)) in own.iter_mut().zip(blood) {
-                    if let Some(load) = measured {
-                        used.clone_from(load);
-                        *own = true;
-                    }
-                }
-                let tangents: Vec<Tangent> = tangents.iter().map(|tangent| tangent.under(own[0], own[1])).collect();
+                let loads = Loads::on(parameters, proximal.clone(), distal.clone()).with_blood(upstream, downstream);
+                let (own_upstream, own_downstream) = (upstream.is_some(), downstream.is_some());
+                let tangents: Vec<Tangent> =
+                    tangents.iter().map(|tangent| tangent.under(own_upstream, own_downstream)).collect();
                 let first = loads.before(times_s[0]);
                 let still = Inputs { proximal_pa: 0.0, distal_pa: 0.0, ..first };
                 self.rest.settle(model, &still, &mut lumens)?;

@@ -19,6 +19,12 @@ pub struct Inputs {
 }
 
 impl Inputs {
+    /// The parameters' blood pressures, and nothing presses.
+    pub fn unloaded(parameters: &Parameters) -> Inputs {
+        let (upstream_pa, downstream_pa) = (parameters.upstream_pa(), parameters.downstream_pa());
+        Inputs { upstream_pa, downstream_pa, ..Inputs::default() }
+    }
+
     /// The first that is not a finite number, by the thesis' symbol.
     pub(crate) fn not_finite(&self) -> Option<(&'static str, f64)> {
         let Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa } = *self;
@@ -114,6 +120,16 @@ impl Loads {
             proximal,
             distal,
         }
+    }
+
+    /// The same over measured blood pressures, where there are any.
+    pub fn with_blood(mut self, upstream: &Option<Load>, downstream: &Option<Load>) -> Loads {
+        for (measured, used) in [(upstream, &mut self.upstream), (downstream, &mut self.downstream)] {
+            if let Some(load) = measured {
+                used.clone_from(load);
+            }
+        }
+        self
     }
 
     /// The inputs at a time, s; at a breakpoint those of what begins there.

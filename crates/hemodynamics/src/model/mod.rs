@@ -42,17 +42,6 @@ pub enum Collapse {
     Contact,
 }
 
-impl Collapse {
-    /// Its word: `error` or `contact`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Error => "error",
-            Self::Contact => "contact",
-        }
-    }
-}
-
 /// The model with its parameters' products computed.
 #[derive(Clone, Debug)]
 pub struct Model {

@@ -33,13 +33,13 @@ pub(crate) enum Halt {
 
 impl Halt {
     /// The same by a clock that began so much earlier, s.
-    pub(crate) fn later(self, by_s: f64) -> Halt {
-        match self {
-            Halt::Load { load, time_s, value } => Halt::Load { load, time_s: by_s + time_s, value },
-            Halt::Collapsed { wall, time_s } => Halt::Collapsed { wall, time_s: by_s + time_s },
-            Halt::Work { time_s } => Halt::Work { time_s: by_s + time_s },
-            Halt::Stuck { time_s, step_s, wall } => Halt::Stuck { time_s: by_s + time_s, step_s, wall },
-        }
+    pub(crate) fn later(mut self, by_s: f64) -> Halt {
+        let (Halt::Load { time_s, .. }
+        | Halt::Collapsed { time_s, .. }
+        | Halt::Work { time_s }
+        | Halt::Stuck { time_s, .. }) = &mut self;
+        *time_s += by_s;
+        self
     }
 }
 

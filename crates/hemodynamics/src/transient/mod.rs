@@ -30,7 +30,7 @@ mod trajectory;
 pub use fault::SolveFault;
 pub(crate) use observer::{AcceptedStep, StepObserver};
 pub use options::{Order, SolveOptions};
-pub use trajectory::{Statistics, Stopped, Trajectory};
+pub use trajectory::{Statistics, Trajectory};
 
 pub(crate) use course::{Begins, Course, Halt, Pace};
 
@@ -145,12 +145,6 @@ impl Solver {
 
     fn fault(&self, halt: Halt, out: &mut Trajectory) -> SolveFault {
         let site = |wall| Site::of_wall(wall, self.model.walls() - 1);
-        out.statistics.stopped = match halt {
-            Halt::Load { .. } => Stopped::Load,
-            Halt::Collapsed { .. } => Stopped::Collapsed,
-            Halt::Work { .. } => Stopped::Work,
-            Halt::Stuck { .. } => Stopped::Stuck,
-        };
         let before = Box::new(std::mem::take(out));
         match halt {
             Halt::Load { load, time_s, value } => SolveFault::Load { load, time_s, value },
@@ -259,9 +253,8 @@ impl Run<'_> {
             evaluations: stepper.evaluations,
             factorizations: stepper.factorizations,
             iterations: stepper.iterations,
-            smallest_step_s: pace.smallest_s,
-            largest_step_s: pace.largest_s,
-            stopped: Stopped::End,
+            smallest_step_s: Some(pace.smallest_s).filter(|step_s| step_s.is_finite()),
+            largest_step_s: Some(pace.largest_s).filter(|step_s| *step_s > 0.0),
         };
         result.map(|()| narrowest)
     }

@@ -2,24 +2,8 @@
 
 use crate::state::State;
 
-/// Why a run stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Stopped {
-    /// The last time asked for was reached.
-    #[default]
-    End,
-    /// A vessel closed.
-    Collapsed,
-    /// The evaluations allowed were spent.
-    Work,
-    /// No step longer than rounding succeeded.
-    Stuck,
-    /// A load was not a finite number.
-    Load,
-}
-
 /// How a run went.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, serde::Serialize)]
 pub struct Statistics {
     /// Stages of the method: 3, 5 or 7.
     pub stages: u32,
@@ -32,13 +16,12 @@ pub struct Statistics {
     /// Jacobians evaluated and factored.
     pub factorizations: u64,
     /// Newton iterations, of all stages at once.
+    #[serde(skip)]
     pub iterations: u64,
-    /// The smallest step accepted, s; infinite where there was none.
-    pub smallest_step_s: f64,
-    /// The largest step accepted, s; 0 where there was none.
-    pub largest_step_s: f64,
-    /// Why the run stopped.
-    pub stopped: Stopped,
+    /// The smallest step accepted, s; none where there was none.
+    pub smallest_step_s: Option<f64>,
+    /// The largest step accepted, s; none where there was none.
+    pub largest_step_s: Option<f64>,
 }
 
 /// The states at the times asked for, as far as the run came.
@@ -95,7 +78,7 @@ impl Trajectory {
         self.times_s.reserve(times);
         self.lumens.reserve(times * walls);
         self.rates.reserve(times * walls);
-        self.statistics = Statistics { smallest_step_s: f64::INFINITY, ..Statistics::default() };
+        self.statistics = Statistics::default();
     }
 
     /// Room for one more state: its lumens and rates, still 0.

@@ -9,7 +9,7 @@ use clap::Args;
 use lunula_hemodynamics::{Course, Load, LoadFault, Recording, Trace};
 
 use crate::hemodynamics::HemodynamicsError;
-use crate::hemodynamics::curve::Pressed;
+use crate::hemodynamics::choices::Pressed;
 use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::job::one_of;
 use crate::log::{LogReading, doubts, is_force_in_another_unit};

@@ -62,14 +62,14 @@ impl<'a> Follower<'a> {
 
     /// What a unit of the load adds to a unit's external pressure, and to the vein's, Pa.
     fn pressed(&self, i: usize) -> f64 {
-        self.path.weights()[1] * self.scale_pa * self.model.units[i].share
+        self.path.of(self.scale_pa)[1] * self.model.units[i].share
     }
 
     fn reduced(&self, at: &Place) -> Reduced {
         let network = self.network(at.load);
         let vein = &network.vein;
         let (venous, slope) = (vein.pressure(at.vein), vein.pressure_slope(at.vein));
-        let by_load = self.path.weights()[0] * self.scale_pa;
+        let by_load = self.path.of(self.scale_pa)[0];
         let rows: Vec<_> =
             network.units.iter().zip(&at.units).map(|(unit, &lumen)| unit.row(lumen, venous, slope)).collect();
         let near = |i: usize| (rows[i].alpha / network.units[i].pressure_slope(at.units[i])).abs();
@@ -106,7 +106,7 @@ impl<'a> Follower<'a> {
     fn spread(&self, at: &Place, reduced: &Reduced, [vein, pivot, load]: [f64; 3], residuals: f64) -> Vec<f64> {
         let network = self.network(at.load);
         let (venous, slope) = (network.vein.pressure(at.vein), network.vein.pressure_slope(at.vein));
-        let by_load = self.path.weights()[0] * self.scale_pa;
+        let by_load = self.path.of(self.scale_pa)[0];
         let step = |(i, (unit, &lumen)): (usize, (&crate::equilibrium::network::Vessel, &f64))| {
             if i == reduced.pivot {
                 return pivot;

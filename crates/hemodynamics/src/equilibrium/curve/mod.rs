@@ -21,14 +21,16 @@ use crate::state::State;
 use super::{Equilibrium, EquilibriumFault, Stability, equilibria};
 use trace::Tracer;
 
-/// Which load a curve goes over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// What a load presses on, and which load a curve goes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum LoadPath {
     /// `P_F1` grows, `P_F2` stays.
     Proximal,
     /// `P_F2` grows, `P_F1` stays.
     Distal,
     /// Both are the load.
+    #[default]
     Both,
 }
 
@@ -103,12 +105,12 @@ impl LoadPath {
         }
     }
 
-    /// What a pascal of load adds to `P_F1` and `P_F2`.
-    fn weights(self) -> [f64; 2] {
+    /// `[P_F1, P_F2]` of a load where nothing else presses.
+    pub fn of(self, load_pa: f64) -> [f64; 2] {
         match self {
-            LoadPath::Proximal => [1.0, 0.0],
-            LoadPath::Distal => [0.0, 1.0],
-            LoadPath::Both => [1.0, 1.0],
+            LoadPath::Proximal => [load_pa, 0.0],
+            LoadPath::Distal => [0.0, load_pa],
+            LoadPath::Both => [load_pa, load_pa],
         }
     }
 }
