@@ -150,10 +150,7 @@ impl Plan {
             Job::Align => (align::measure(&self.align(folder)?)?, Vec::new()),
             Job::Predictor => (predictor::measure(&self.predictor(folder)?)?, Vec::new()),
             Job::Switch => (switch::measure(&self.switch(folder)?)?, Vec::new()),
-            Job::Hemodynamics => {
-                let settings = hemodynamics::Settings { effort: self.effort.clone() };
-                (hemodynamics::measure(&settings)?, hemodynamics::stability()?)
-            }
+            Job::Hemodynamics => (hemodynamics::measure(&self.effort)?, hemodynamics::stability()?),
         };
         let others: Vec<&PeerRow> = others.iter().filter(|row| row.stage == job).collect();
         Ok(Tradeoff { maps, ..judge(job.name(), measured, (&self.scene(job), &others), begun)? })

@@ -15,7 +15,7 @@ use crate::photo::{
     NailFrame, Normalization, Outputs, Photo, PhotoSet, Photograph, PhotosOptions, Resample, run as run_photos,
 };
 use crate::tradeoff::measure::rows::{Measured, Row};
-use crate::tradeoff::measure::timing::{Effort, Run, Timing, in_turns};
+use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
 
 /// How values between pixels come about: job and choice.
 pub const RESAMPLING: (&str, &str) = ("photos", "resampling");
@@ -148,9 +148,8 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
         let found = in_turns(&RESAMPLE, effort, |&resample, first| one.install(|| resampled(scene, resample, first)))?;
         for (resample, found) in RESAMPLE.into_iter().zip(found) {
             let (time, errors) = found?;
-            measured
-                .rows
-                .extend(errors.into_iter().map(|error| resampling_row(&resampling(resample), resample, error, time)));
+            let row = |(unit, error)| Row::own(RESAMPLING, &resampling(resample), (error, unit), time, taps(resample));
+            measured.rows.extend(errors.into_iter().map(row));
         }
     }
     let [_, (_, of_sd)] = MAP_ERRORS;
@@ -169,10 +168,6 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
         measured.rows.push(Row::own(DETECTION, &detection(px), (error, OUTLINE_ERROR), time, work));
     }
     Ok(measured)
-}
-
-fn resampling_row(setting: &str, resample: Resample, error: (&str, f64), time: Timing) -> Row {
-    Row::own(RESAMPLING, setting, (error.1, error.0), time, taps(resample))
 }
 
 /// Samples of a photograph that a normalized picture takes.

@@ -8,7 +8,7 @@ use crate::job::Watch;
 use crate::posture::{Layout, Method, Outputs, Planes, PostureOptions, Search, run as run_posture};
 use crate::table::Table;
 use crate::tradeoff::measure::rows::{Measured, Row};
-use crate::tradeoff::measure::timing::{Effort, Run, Timing, in_turns};
+use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
 
 /// What is measured, and how often.
 #[derive(Debug, Clone)]
@@ -61,13 +61,9 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let mut measured = Measured::default();
     for (found, (name, ..)) in found.into_iter().zip(SETTINGS) {
         let (time, (errors, work)) = found?;
-        measured.rows.extend(errors.iter().map(|(unit, error)| row(name, (*error, unit), time, work)));
+        measured.rows.extend(errors.iter().map(|(unit, error)| Row::own(TRACKING, name, (*error, unit), time, work)));
     }
     Ok(measured)
-}
-
-fn row(setting: &str, error: (f64, &str), time: Timing, work: u64) -> Row {
-    Row::own(TRACKING, setting, error, time, work)
 }
 
 /// Errors with their names, and samples looked at.

@@ -13,7 +13,7 @@ use crate::align::{AlignInputs, AlignOptions, AlignOutputs, run as run_align};
 use crate::job::Watch;
 use crate::posture::Layout;
 use crate::table::Table;
-use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::rows::Measured;
 use crate::tradeoff::measure::timing::in_turns;
 
 /// How long a gap is labelled over: job and choice.
@@ -66,10 +66,7 @@ pub(super) fn measure(
         Ok((report.wall_s, first.then(|| labels.error(&training)).transpose()?))
     })?;
     for ((name, _), found) in INTERVALS.into_iter().zip(found) {
-        match found {
-            Ok((time, (error, rows))) => measured.rows.push(Row::own(BRIDGING, name, (error, LABEL_ERROR), time, rows)),
-            Err(why) => measured.refused.push(format!("{name}: {why:#}")),
-        }
+        measured.add(BRIDGING, name, LABEL_ERROR, found);
     }
     Ok(())
 }

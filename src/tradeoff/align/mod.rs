@@ -76,12 +76,7 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
         Ok((seconds, first.then(error).transpose()?))
     })?;
     for (frames, found) in EVERY.into_iter().zip(found) {
-        match found {
-            Ok((time, (error, work))) => {
-                measured.rows.push(Row::own(TYING, &every(frames), (error, TIE_ERROR), time, work))
-            }
-            Err(why) => measured.refused.push(format!("{}: {why:#}", every(frames))),
-        }
+        measured.add(TYING, &every(frames), TIE_ERROR, found);
     }
     let lag = in_turns(&[()], &settings.effort, |(), first| correlated(&joints(EVERY[0]), &truth, first, settings))?;
     for found in lag {

@@ -12,8 +12,8 @@ pub(super) use bench::AUTO;
 pub use bench::Bench;
 pub(super) use maps::write as write_maps;
 pub use maps::{Map, stability};
+pub use modes::measure;
 pub(super) use modes::solving_default;
-pub use modes::{Settings, measure};
 
 /// By which method, how exactly: job and choice.
 pub const SOLVING: (&str, &str) = ("hemodynamics", "solving");

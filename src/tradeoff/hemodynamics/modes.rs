@@ -4,15 +4,8 @@ use lunula_hemodynamics::{Collapse, Model, Order, SolveOptions, Trajectory};
 
 use super::bench::{AUTO, Bench};
 use super::{ERROR, SOLVING};
-use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::rows::Measured;
 use crate::tradeoff::measure::timing::{Effort, in_turns};
-
-/// What is measured.
-#[derive(Debug, Clone)]
-pub struct Settings {
-    /// How much.
-    pub effort: Effort,
-}
 
 /// Tolerances that are asked for.
 const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
@@ -36,22 +29,19 @@ enum Way<'a> {
 ///
 /// # Errors
 /// No reference; [`Interrupted`](crate::job::Interrupted).
-pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
+pub fn measure(effort: &Effort) -> anyhow::Result<Measured> {
     let bench = Bench::new()?;
     // The same solver on the equations as they are printed, whose resistances cancel.
     let printed = Model::printed(&bench.parameters, Collapse::Error)?;
     let ways = ways(&bench.model, &printed);
     let mut measured = Measured::default();
     let mut found = Trajectory::default();
-    let each = in_turns(&ways, &settings.effort, |(_, way), first| match way {
+    let each = in_turns(&ways, effort, |(_, way), first| match way {
         Way::Full(model, options) => bench.full(model, options, first, &mut found),
         Way::Live(hz) => bench.live(*hz, first),
     })?;
     for ((setting, _), found) in ways.iter().zip(each) {
-        match found {
-            Ok((time, (error, work))) => measured.rows.push(Row::own(SOLVING, setting, (error, ERROR), time, work)),
-            Err(why) => measured.refused.push(format!("{setting}: {why:#}")),
-        }
+        measured.add(SOLVING, setting, ERROR, found);
     }
     Ok(measured)
 }

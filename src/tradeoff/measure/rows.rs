@@ -1,7 +1,5 @@
 //! What is measured: the rows of `tradeoff.csv`.
 
-use std::path::Path;
-
 use anyhow::Context;
 
 use crate::files::Staging;
@@ -80,6 +78,22 @@ pub struct Measured {
     pub refused: Vec<String>,
 }
 
+impl Measured {
+    /// A setting's row (time, error and work), else why it has none.
+    pub(in crate::tradeoff) fn add(
+        &mut self,
+        choice: (&'static str, &'static str),
+        setting: &str,
+        error_unit: &str,
+        found: anyhow::Result<(Timing, (f64, u64))>,
+    ) {
+        match found {
+            Ok((time, (error, work))) => self.rows.push(Row::own(choice, setting, (error, error_unit), time, work)),
+            Err(why) => self.refused.push(format!("{setting}: {why:#}")),
+        }
+    }
+}
+
 /// Writes `tradeoff.csv`. What is no number is empty.
 pub(in crate::tradeoff) fn write_table(rows: &[&Row], staging: &Staging) -> anyhow::Result<()> {
     let header = "job,setting,error,error_unit,run_s,work,choice,run_low_s,run_high_s,repeats,knee,default,peer";
@@ -113,9 +127,5 @@ pub(in crate::tradeoff) fn write_table(rows: &[&Row], staging: &Staging) -> anyh
 /// A file of the results.
 pub(in crate::tradeoff) fn write_file(name: &str, bytes: &[u8], staging: &Staging) -> anyhow::Result<()> {
     let place = staging.place(name)?;
-    write_at(&place, bytes)
-}
-
-fn write_at(place: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    std::fs::write(place, bytes).with_context(|| place.display().to_string())
+    std::fs::write(&place, bytes).with_context(|| place.display().to_string())
 }

@@ -187,15 +187,10 @@ fn fewer(
     let found = in_turns(&parts, effort, |part, _| {
         let (seconds, fitted) = one.install(|| fit(Kind::Linear, 1, part))?;
         let fitted = fitted.ok_or_else(|| anyhow::anyhow!("no model"))?;
-        Ok((seconds, Some(error(&fitted, test)?)))
+        Ok((seconds, Some((error(&fitted, test)?, part.rows() as u64))))
     })?;
-    for ((n, part), found) in ONE_IN.into_iter().zip(&parts).zip(found) {
-        match found {
-            Ok((time, error)) => {
-                measured.rows.push(Row::own(ROWS, &some(n), (error, ROWS_ERROR), time, part.rows() as u64))
-            }
-            Err(why) => measured.refused.push(format!("{}: {why:#}", some(n))),
-        }
+    for (n, found) in ONE_IN.into_iter().zip(found) {
+        measured.add(ROWS, &some(n), ROWS_ERROR, found);
     }
     Ok(())
 }

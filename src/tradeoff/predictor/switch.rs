@@ -166,12 +166,8 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
         }
         for per_hour in RATES {
             effort.check()?;
-            match choose(&chosen, per_hour).and_then(|config| cost(&config, &judged)) {
-                Ok((error, delay)) => {
-                    measured.rows.push(Row::own(RATE, &rate(per_hour), (error, FALSE), delay, 1));
-                }
-                Err(why) => measured.refused.push(format!("{}: {why:#}", rate(per_hour))),
-            }
+            let found = choose(&chosen, per_hour).and_then(|config| cost(&config, &judged));
+            measured.add(RATE, &rate(per_hour), FALSE, found);
         }
     }
     Ok(measured)
@@ -197,12 +193,12 @@ fn lost_s(config: &SwitchConfig, traces: &[Trace]) -> f64 {
     lost / f64::from(contacts)
 }
 
-/// False switches per hour, at most, and how the delays are spread.
-fn cost(config: &SwitchConfig, traces: &[Trace]) -> anyhow::Result<(f64, Timing)> {
+/// How the delays are spread, and the false switches per hour, at most, with one answer as the work.
+fn cost(config: &SwitchConfig, traces: &[Trace]) -> anyhow::Result<(Timing, (f64, u64))> {
     let found = Evaluation::of(config, traces);
     let (rate, delay) = found.rate.zip(found.delay_on_s).context("it never pressed")?;
     let time = Timing { median_s: delay.median, low_s: delay.low, high_s: delay.high, repeats: delay.count };
-    Ok((rate.false_per_hour_high, time))
+    Ok((time, (rate.false_per_hour_high, 1)))
 }
 
 #[cfg(test)]
