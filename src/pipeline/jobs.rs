@@ -14,33 +14,30 @@ use crate::posture::PostureJob;
 use crate::predictor::trajectory::TrajectoryOptions;
 use crate::predictor::{AnalyseJob, EvaluateChoices, PredictChoices, PruneChoices, TrainChoices};
 
-/// Their kinds, by name.
+/// Their kinds, one line each, sorted by name.
 #[must_use]
 pub fn kinds() -> &'static [&'static Kind] {
-    KINDS
+    &[
+        &AlignJob::KIND,
+        &AnalyseJob::KIND,
+        &CameraOptions::KIND,
+        &EvaluateChoices::KIND,
+        &FitOptions::KIND,
+        &JoinJob::KIND,
+        &LayoutOptions::KIND,
+        &MapsJob::KIND,
+        &NailVideoJob::KIND,
+        &PhotosOptions::KIND,
+        &PerformanceOptions::KIND,
+        &PostureJob::KIND,
+        &PredictChoices::KIND,
+        &PruneChoices::KIND,
+        &SimulateOptions::KIND,
+        &SkillOptions::KIND,
+        &CurveOptions::KIND,
+        &ContactOptions::KIND,
+        &TuneOptions::KIND,
+        &TrainChoices::KIND,
+        &TrajectoryOptions::KIND,
+    ]
 }
-
-/// One line per kind, sorted by name.
-static KINDS: &[&Kind] = &[
-    &AlignJob::KIND,
-    &AnalyseJob::KIND,
-    &CameraOptions::KIND,
-    &EvaluateChoices::KIND,
-    &FitOptions::KIND,
-    &JoinJob::KIND,
-    &LayoutOptions::KIND,
-    &MapsJob::KIND,
-    &NailVideoJob::KIND,
-    &PhotosOptions::KIND,
-    &PerformanceOptions::KIND,
-    &PostureJob::KIND,
-    &PredictChoices::KIND,
-    &PruneChoices::KIND,
-    &SimulateOptions::KIND,
-    &SkillOptions::KIND,
-    &CurveOptions::KIND,
-    &ContactOptions::KIND,
-    &TuneOptions::KIND,
-    &TrainChoices::KIND,
-    &TrajectoryOptions::KIND,
-];

@@ -16,9 +16,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use clap::Args;
 use toml::{Table, Value};
 
-use crate::job::{Keys, Made, Maker, OptionFault, Said, Work, read};
+use crate::job::{Keys, Made, OptionFault, Said, Work, read};
 use crate::phantom::board::BoardOptions;
 use crate::phantom::nailvideo::NailVideoRequest;
 use crate::phantom::request::{LogRequest, PhotosRequest, VideoRequest};
@@ -69,35 +70,27 @@ pub struct Placed {
 #[must_use]
 pub fn scenes() -> &'static [Block] {
     &[
-        Block { name: "photos", several: false, read: photos },
-        Block { name: "video", several: true, read: video },
-        Block { name: "log", several: true, read: log },
-        Block { name: "board", several: true, read: board },
-        Block { name: "nailvideo", several: true, read: nailvideo },
+        Block { name: "photos", several: false, read: |o| scene(o, "photos", |r: &PhotosRequest| Ok(r.options())) },
+        Block { name: "video", several: true, read: |o| scene(without_files(o)?, "video", VideoRequest::options) },
+        Block { name: "log", several: true, read: |o| scene(without_files(o)?, "log", LogRequest::options) },
+        Block { name: "board", several: true, read: |o| scene(o, "board", |r: &BoardOptions| Ok(r.clone())) },
+        Block {
+            name: "nailvideo",
+            several: true,
+            read: |o| scene(without_files(o)?, "nailvideo", NailVideoRequest::options),
+        },
     ]
 }
 
-fn photos(options: &Table) -> Result<Asked, OptionFault> {
-    Ok(Asked::Scene(Box::new(read::<PhotosRequest>(options, "`lunula phantom photos`")?.options.options())))
-}
-
-fn video(options: &Table) -> Result<Asked, OptionFault> {
-    let request = read::<VideoRequest>(without_files(options)?, "`lunula phantom video`")?.options;
-    Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
-}
-
-fn log(options: &Table) -> Result<Asked, OptionFault> {
-    let request = read::<LogRequest>(without_files(options)?, "`lunula phantom log`")?.options;
-    Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
-}
-
-fn board(options: &Table) -> Result<Asked, OptionFault> {
-    Ok(Asked::Scene(Box::new(read::<BoardOptions>(options, "`lunula phantom board`")?.options)))
-}
-
-fn nailvideo(options: &Table) -> Result<Asked, OptionFault> {
-    let request = read::<NailVideoRequest>(without_files(options)?, "`lunula phantom nailvideo`")?.options;
-    Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
+/// The scene that `lunula phantom NAME` makes with these options.
+fn scene<R: Args, G: Generated + 'static>(
+    options: &Table,
+    name: &str,
+    make: fn(&R) -> anyhow::Result<G>,
+) -> Result<Asked, OptionFault> {
+    let request = read::<R>(options, &format!("`lunula phantom {name}`"))?.options;
+    let scene = make(&request).map_err(|why| OptionFault::whole(format!("{why:#}")))?;
+    Ok(Asked::Scene(Box::new(scene)))
 }
 
 /// What a block `[phantom]` makes, which may ask for any of `known`.
@@ -197,10 +190,6 @@ fn inner(key: &str, fault: OptionFault) -> OptionFault {
     OptionFault { key, what: fault.what }
 }
 
-fn unread(why: &anyhow::Error) -> OptionFault {
-    OptionFault::whole(format!("{why:#}"))
-}
-
 fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue {
     let mut files = Vec::new();
     let mut tasks = Vec::new();
@@ -212,7 +201,7 @@ fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue
         }));
         let cost = recording.cost();
         let options = serde_json::json!({ "kind": "phantom", "revision": REVISION, "recording": recording.options() });
-        let job = Arc::new(Generate(recording));
+        let job = Arc::new(move |work: &Work<'_>| generate(&*recording, work));
         tasks.push(CatalogueTask { name, keys, options, memory: cost.memory, cost_s: cost.seconds, job });
     }
     files.sort_by(|a, b| a.path.cmp(&b.path));
@@ -220,16 +209,12 @@ fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue
 }
 
 /// Makes a recording.
-struct Generate(Box<dyn Generated>);
-
-impl Maker for Generate {
-    fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let stages = Stages::default();
-        let said = Said::default();
-        work.run(&said, |watch| stages.time("generate", || self.0.write(work.folder, watch)))?;
-        let report = serde_json::json!({ "job": "phantom", "files": self.0.files().len() });
-        Ok(Made { report, stages: stages.list(), ..Made::default() })
-    }
+fn generate(recording: &dyn Generated, work: &Work<'_>) -> anyhow::Result<Made> {
+    let stages = Stages::default();
+    let said = Said::default();
+    work.run(&said, |watch| stages.time("generate", || recording.write(work.folder, watch)))?;
+    let report = serde_json::json!({ "job": "phantom", "files": recording.files().len() });
+    Ok(Made { report, stages: stages.list(), ..Made::default() })
 }
 
 #[cfg(test)]

@@ -15,7 +15,8 @@ const TOLD: usize = 5;
 
 /// An input's items, for each of the columns that stages name, or its files.
 pub(in crate::pipeline) struct InputItems {
-    relations: Vec<Relation>,
+    /// Those of each column that stages name, or the files'.
+    pub(in crate::pipeline) relations: Vec<Relation>,
     /// The names that a filter may use.
     pub(in crate::pipeline) columns: Vec<String>,
     /// Of a table all rows, those that `where` leaves out too: what is known of each, and its place in the table.
@@ -28,11 +29,6 @@ impl InputItems {
     /// The items of a column, or the files.
     pub(in crate::pipeline) fn of(&self, column: Option<usize>) -> Relation {
         self.relations.get(column.unwrap_or(0)).cloned().unwrap_or_default()
-    }
-
-    /// Those of each column that stages name, or the files'.
-    pub(in crate::pipeline) fn relations(&self) -> &[Relation] {
-        &self.relations
     }
 }
 

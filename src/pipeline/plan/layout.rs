@@ -211,8 +211,8 @@ fn filter_stage(spec: &Spec, stage: &StageSpec, given: &mut [Relation]) -> Resul
     })?;
     for relation in given {
         relation.items.retain(|item| {
-            let known = stage.filter.iter().filter(|(key, _, _)| item.keys.get(key).is_some());
-            known.into_iter().all(|(key, values, _)| item.keys.get(key).is_some_and(|v| values.iter().any(|w| w == v)))
+            let fits = |value: &str, values: &[String]| values.iter().any(|one| one == value);
+            stage.filter.iter().all(|(key, values, _)| item.keys.get(key).is_none_or(|value| fits(value, values)))
         });
     }
     Ok(())

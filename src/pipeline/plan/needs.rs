@@ -41,20 +41,15 @@ pub(super) fn demands(spec: &Spec, layout: &Layout<'_>) -> Demands {
 }
 
 fn add(demands: &mut Demands, node: usize, more: &Demand) {
-    match demands.entry(node) {
-        std::collections::btree_map::Entry::Vacant(new) => {
-            new.insert(more.clone());
-        }
-        std::collections::btree_map::Entry::Occupied(mut there) => {
-            let there = there.get_mut();
-            there.parts.extend(&more.parts);
-            there.joints = match (there.joints.take(), &more.joints) {
-                (Some(some), Some(others)) => Some(some.union(others).cloned().collect()),
-                _ => None,
-            };
-            there.clock |= more.clock;
-        }
-    }
+    let join = |there: &mut Demand| {
+        there.parts.extend(&more.parts);
+        there.joints = match (there.joints.take(), &more.joints) {
+            (Some(some), Some(others)) => Some(some.union(others).cloned().collect()),
+            _ => None,
+        };
+        there.clock |= more.clock;
+    };
+    demands.entry(node).and_modify(join).or_insert_with(|| more.clone());
 }
 
 /// The tasks of the nodes that are needed.

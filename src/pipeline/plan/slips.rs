@@ -45,7 +45,7 @@ pub(super) fn slips(spec: &Spec, inputs: &[Option<InputItems>], taken: &BTreeSet
     }
     for (input, items) in spec.inputs.iter().zip(inputs) {
         let (InputSource::Files(pattern), Some(items)) = (&input.source, items) else { continue };
-        let found = || items.relations().iter().flat_map(|relation| &relation.items);
+        let found = || items.relations.iter().flat_map(|relation| &relation.items);
         for key in items.columns.iter().filter(|key| each.contains(key.as_str())) {
             let values = found().filter_map(|item| item.keys.get(key));
             warnings.extend(twins(&format!("`{pattern}`: the values of `{key}`"), values));
@@ -74,7 +74,7 @@ pub(super) fn empty_keys(spec: &Spec, inputs: &[Option<InputItems>]) -> Vec<Stri
     let each = each(spec);
     for (input, items) in spec.inputs.iter().zip(inputs) {
         let (InputSource::Table(_), Some(items)) = (&input.source, items) else { continue };
-        for relation in items.relations() {
+        for relation in &items.relations {
             for key in relation.names.iter().filter(|key| each.contains(key.as_str()) || *key == SUBJECT) {
                 let without = relation.items.iter().filter(|item| item.keys.get(key).is_none());
                 let without: Vec<&str> = without.map(|item| item.place.as_str()).collect();

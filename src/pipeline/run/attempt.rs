@@ -14,7 +14,7 @@ use jiff::Timestamp;
 
 use super::Results;
 use crate::job::{At, Work};
-use crate::pipeline::spec::said::{all_in_keys, in_keys, report_in_keys};
+use crate::pipeline::spec::said::{in_keys, made_in_keys};
 use crate::pipeline::store::commit::{CommitFault, commit, files, is_kept_aside, outputs, retire};
 use crate::pipeline::store::hashes::{FileFault, files_in};
 use crate::pipeline::store::record::{FORMAT, Fingerprint, Known, Record, within};
@@ -150,10 +150,7 @@ impl Bench<'_> {
             Work { inputs: at, folder: &folder, before: due.stands.then_some(before.as_path()), threads, stop };
         let made = match catch_unwind(AssertUnwindSafe(|| task.job.run(&work_given))) {
             Ok(Ok(mut made)) => {
-                for texts in [&mut made.left_out, &mut made.warnings, &mut made.notes, &mut made.failed] {
-                    all_in_keys(texts);
-                }
-                report_in_keys(&mut made.report);
+                made_in_keys(&mut made);
                 made
             }
             Ok(Err(_)) if stop.load(Ordering::Relaxed) => return Err(Miss::Stopped),

@@ -208,7 +208,7 @@ impl Results {
         match PartMark::of(&self.store) {
             Some(found) if found == mark => Ok(()),
             Some(found) if found.shard != asked => {
-                Err(RunFault::OtherPart { path: self.store.out().to_owned(), found: found.shard, asked })
+                Err(RunFault::OtherPart { path: self.store.out.clone(), found: found.shard, asked })
             }
             _ => Ok(mark.write(&self.store)?),
         }
@@ -293,7 +293,7 @@ impl<'a> Run<'a> {
                             let all = self.queue().tried(at, why, Outcome::Failed(what), None);
                             self.tell(&all, Vec::new());
                         }
-                        Err(Miss::Stopped) => self.queue().stopped(at),
+                        Err(Miss::Stopped) => self.queue().free(at),
                     }
                 }
                 Next::Wait => {}

@@ -129,12 +129,8 @@ impl<'a> Queue<'a> {
         self.settle(at, Settled { outcome, record: record.map(Arc::new), why: Some(why), root: None })
     }
 
-    /// A task was begun and stopped from outside: neither it nor what needs it is settled.
-    pub(super) fn stopped(&mut self, at: usize) {
-        self.free(at);
-    }
-
-    fn free(&mut self, at: usize) {
+    /// A task that was begun is no longer under way; stopped from outside, neither it nor what needs it is settled.
+    pub(super) fn free(&mut self, at: usize) {
         self.under_way -= 1;
         self.doing -= 1;
         self.in_use = self.in_use.saturating_sub(self.tasks[at].memory);

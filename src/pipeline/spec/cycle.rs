@@ -1,7 +1,6 @@
 //! The order of stages: each after those that it works on, or the circle in which they stand.
 
-use super::header::Header;
-use super::{From, StageSpec};
+use super::{From, Header, StageSpec};
 use crate::toml_file::Findings;
 
 /// The stages that a stage works on.

@@ -22,7 +22,6 @@
 //! ```
 
 mod cycle;
-mod header;
 mod read;
 mod reference;
 pub(super) mod said;
@@ -35,8 +34,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::input;
-use crate::job::OptionFault;
-use crate::job::{Kind, Part, Prepared};
+use crate::job::{Kind, OptionFault, Part, Prepared};
 use crate::pipeline::items::catalogue::Catalogue;
 use crate::pipeline::parts::shard::PipelineMark;
 use crate::toml_file::{Fault, place};
@@ -142,6 +140,13 @@ pub(super) enum From {
     Input(usize, Option<usize>),
     /// A stage, and which of its kind's parts, by position; none: the whole folder.
     Stage(usize, Option<usize>),
+}
+
+/// A stage's name and job, before its references can be read.
+struct Header {
+    name: String,
+    at: Place,
+    kind: Option<&'static Kind>,
 }
 
 pub(super) struct StageSpec {

@@ -5,9 +5,8 @@ use std::path::Path;
 
 use toml::de::DeValue;
 
-use super::header::Header;
 use super::reference::{Names, filter, strings};
-use super::{Generated, InputSource, InputSpec, Place, Spec, Wanted, cycle, stages};
+use super::{Generated, Header, InputSource, InputSpec, Place, Spec, Wanted, cycle, stages};
 use crate::job::Kind;
 use crate::toml_file::{Entry, Fault, Findings, entries};
 use crate::words::instead;

@@ -2,8 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::header::Header;
-use super::{Filter, From, InputSource, InputSpec, Place, Reference};
+use super::{Filter, From, Header, InputSource, InputSpec, Place, Reference};
 use crate::toml_file::{Entry, Findings, entries};
 use crate::words::instead;
 

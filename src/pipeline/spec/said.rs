@@ -1,6 +1,8 @@
 //! What a job says in the words of the command line, in those of a pipeline file: `--full-scale LOW,HIGH` is the key
 //! `full_scale` there.
 
+use crate::job::Made;
+
 /// A text with keys in place of options.
 pub(in crate::pipeline) fn in_keys(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -31,14 +33,11 @@ pub(in crate::pipeline) fn in_keys(text: &str) -> String {
 }
 
 /// The same of all of a job's texts for people.
-pub(in crate::pipeline) fn all_in_keys(texts: &mut [String]) {
-    texts.iter_mut().for_each(|text| *text = in_keys(text));
-}
-
-/// The same of a report's.
-pub(in crate::pipeline) fn report_in_keys(report: &mut serde_json::Value) {
+pub(in crate::pipeline) fn made_in_keys(made: &mut Made) {
+    let lists = [&mut made.left_out, &mut made.warnings, &mut made.notes, &mut made.failed];
+    lists.into_iter().flatten().for_each(|text| *text = in_keys(text));
     for list in ["warnings", "left_out"] {
-        for text in report.get_mut(list).and_then(|list| list.as_array_mut()).into_iter().flatten() {
+        for text in made.report.get_mut(list).and_then(|list| list.as_array_mut()).into_iter().flatten() {
             if let serde_json::Value::String(text) = text {
                 *text = in_keys(text);
             }

@@ -4,9 +4,8 @@ use std::collections::BTreeSet;
 
 use toml::de::DeValue;
 
-use super::header::Header;
 use super::reference::{Names, filter, reference, strings};
-use super::{Reference, StageSpec};
+use super::{Header, Reference, StageSpec};
 use crate::job::{Kind, Role, Takes};
 use crate::pipeline::spec::said::in_keys;
 use crate::toml_file::{Entry, Findings};

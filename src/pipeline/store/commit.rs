@@ -100,7 +100,7 @@ pub(in crate::pipeline) fn recover(store: &Store, hashes: &Hashes) -> io::Result
 
 /// The second half of [`commit`]; done again it does nothing.
 fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<Vec<String>, CommitFault> {
-    note_placed(store.out());
+    note_placed(&store.out);
     let folder = store.folder(&record.task);
     let old = store.record(&record.task);
     let ours: HashMap<&str, ContentHash> =
@@ -114,7 +114,7 @@ fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<V
         }
     }
     if !folder.exists() && files(work).exists() {
-        let parent = folder.parent().unwrap_or(store.out());
+        let parent = folder.parent().unwrap_or(&store.out);
         fs::create_dir_all(parent).map_err(io_fault(parent))?;
         rename(&files(work), &folder).map_err(io_fault(&folder))?;
     }

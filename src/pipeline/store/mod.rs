@@ -39,7 +39,7 @@ pub(super) struct FailureNote {
 /// The places in a folder of results.
 #[derive(Debug, Clone)]
 pub(super) struct Store {
-    out: PathBuf,
+    pub(super) out: PathBuf,
     home: PathBuf,
 }
 
@@ -58,10 +58,6 @@ impl Store {
         [&self.out, &self.home, &self.records(), &self.failures()]
             .into_iter()
             .for_each(|folder| clear_leftovers(folder));
-    }
-
-    pub(super) fn out(&self) -> &Path {
-        &self.out
     }
 
     pub(super) fn hashes(&self) -> PathBuf {

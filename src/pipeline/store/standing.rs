@@ -4,6 +4,7 @@
 //! there and holds what it held. What needs a task that does not stand is said to follow from it; it may yet stand
 //! where that comes out the same as before.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
@@ -180,29 +181,24 @@ fn options_changed(before: &serde_json::Value, now: &serde_json::Value) -> Why {
     let (Some(before), Some(now)) = (before.as_object(), now.as_object()) else {
         return Why::OptionsChanged(Vec::new());
     };
-    let is_version = |name: &str| matches!(name, "revision" | "version");
-    let mut changed: Vec<String> =
-        before.keys().chain(now.keys()).filter(|name| before.get(*name) != now.get(*name)).cloned().collect();
-    changed.sort_unstable();
-    changed.dedup();
-    if changed.iter().any(|name| is_version(name)) {
+    let changed = differing(before, now);
+    if changed.iter().any(|name| matches!(name.as_str(), "revision" | "version")) {
         return Why::VersionChanged;
     }
     // Options within options are named by themselves.
-    let within = match &changed[..] {
-        [one] => {
-            before.get(one).and_then(|before| before.as_object()).zip(now.get(one).and_then(|now| now.as_object()))
-        }
-        _ => None,
-    };
-    if let Some((before, now)) = within {
-        let mut inner: Vec<String> =
-            before.keys().chain(now.keys()).filter(|name| before.get(*name) != now.get(*name)).cloned().collect();
-        inner.sort_unstable();
-        inner.dedup();
-        return Why::OptionsChanged(inner);
-    }
-    Why::OptionsChanged(changed)
+    let within = |of: &Options| if let [one] = &changed[..] { of.get(one)?.as_object().cloned() } else { None };
+    Why::OptionsChanged(match within(before).zip(within(now)) {
+        Some((before, now)) => differing(&before, &now),
+        None => changed,
+    })
+}
+
+type Options = serde_json::Map<String, serde_json::Value>;
+
+/// The names of options that are not the same in both, sorted.
+fn differing(before: &Options, now: &Options) -> Vec<String> {
+    let names: BTreeSet<&String> = before.keys().chain(now.keys()).collect();
+    names.into_iter().filter(|name| before.get(*name) != now.get(*name)).cloned().collect()
 }
 
 /// A result that is not there as it was made.
