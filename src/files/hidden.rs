@@ -96,7 +96,7 @@ pub(super) fn is_private(folder: &Path) -> bool {
 /// that is free.
 ///
 /// What can't be removed now, the next run tries again.
-pub(super) fn clear(folder: &Path) {
+pub fn clear(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if !PREFIXES.iter().any(|prefix| entry.file_name().to_string_lossy().starts_with(prefix)) {
             continue;

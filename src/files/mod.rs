@@ -16,6 +16,7 @@ use std::sync::{Mutex, PoisonError};
 
 use thiserror::Error;
 
+pub use hidden::clear as clear_leftovers;
 pub use staging::{Places, Staging};
 
 /// Why results can't be written.
@@ -87,11 +88,6 @@ pub(crate) fn note_placed(folder: &Path) {
 #[must_use]
 pub fn results_stand() -> bool {
     PLACED.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|folder| folder.exists())
-}
-
-/// Removes what killed runs left in a folder.
-pub fn clear_leftovers(folder: &Path) {
-    hidden::clear(folder);
 }
 
 /// Whether both stand and are one file, whatever they are called.

@@ -220,13 +220,8 @@ enum Step {
         staged: PathBuf,
         place: PathBuf,
     },
-    /// What stood there has a second name.
-    Replaced {
-        aside: PathBuf,
-        place: PathBuf,
-    },
-    /// What stood there was renamed.
-    Taken {
+    /// What stood there is kept aside, under a second name or renamed.
+    Aside {
         aside: PathBuf,
         place: PathBuf,
     },
@@ -241,9 +236,7 @@ impl Step {
                 Ok(())
             }
             Self::New { staged, place } => disk::rename(place, staged).map_err(|_| place.clone()),
-            Self::Replaced { aside, place } | Self::Taken { aside, place } => {
-                disk::rename(aside, place).map_err(|_| place.clone())
-            }
+            Self::Aside { aside, place } => disk::rename(aside, place).map_err(|_| place.clone()),
         }
     }
 }
@@ -354,7 +347,7 @@ fn put(entry: &Entry, steps: &mut Vec<Step>) -> At<()> {
     if is_file(&made) && is_file(&stands) && disk::link(place, aside).is_ok() {
         // The place is never empty.
         disk::rename(staged, place).map_err(failed)?;
-        steps.push(Step::Replaced { aside: aside.clone(), place: place.clone() });
+        steps.push(Step::Aside { aside: aside.clone(), place: place.clone() });
         return Ok(());
     }
     if stands.is_some() {
@@ -363,7 +356,7 @@ fn put(entry: &Entry, steps: &mut Vec<Step>) -> At<()> {
         note.push(PLACE);
         disk::write(Path::new(&note), name.to_string_lossy().as_bytes()).map_err(failed)?;
         disk::rename(place, aside).map_err(failed)?;
-        steps.push(Step::Taken { aside: aside.clone(), place: place.clone() });
+        steps.push(Step::Aside { aside: aside.clone(), place: place.clone() });
     }
     if made.is_some() {
         disk::rename(staged, place).map_err(failed)?;
