@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::words::Words;
+use crate::words::{Words, fixed};
 
 pub(crate) use cells::{DELIMITERS, delimiter_of};
 pub use read::{Cell, Table, column_names};
@@ -312,12 +312,7 @@ pub(crate) fn number_text(number: f64, decimals: Option<usize>) -> Option<String
         push_number(&mut text, number);
         return Some(text);
     };
-    let mut text = format!("{number:.decimals$}");
-    // A negative number that rounds to nothing has no sign.
-    if text.starts_with('-') && text.bytes().skip(1).all(|b| b == b'0' || b == b'.') {
-        text.remove(0);
-    }
-    Some(text)
+    Some(fixed(number, decimals))
 }
 
 /// Writes a number of a column of free decimals at the end of a line; nothing where it is missing.

@@ -64,7 +64,7 @@ impl ParquetWriter {
 
     pub(super) fn write(&mut self, cells: &[Value<'_>], columns: &[Column]) -> Result<(), String> {
         for ((cell, column), held) in cells.iter().zip(columns).zip(&mut self.held) {
-            held.push(cell, column.kind);
+            held.push(cell, column.decimals());
         }
         self.rows += 1;
         if self.rows == GROUP_ROWS { self.write_group() } else { Ok(()) }
@@ -114,16 +114,18 @@ impl Held {
         Self { cells, known: Vec::new() }
     }
 
-    fn push(&mut self, cell: &Value<'_>, kind: ColumnKind) {
-        let decimals = if let ColumnKind::Number { decimals } = kind { decimals } else { None };
+    fn push(&mut self, cell: &Value<'_>, decimals: Option<usize>) {
         let known = match (&mut self.cells, cell) {
             (Cells::Integers(held), Value::Integer(whole)) => {
                 held.push(*whole);
                 true
             }
             (Cells::Numbers(held), Value::Integer(_) | Value::Number(_)) => {
-                let number = if let Value::Integer(whole) = cell { *whole as f64 } else { number_of(cell) };
-                let number = number_value(number, decimals);
+                let number = match cell {
+                    Value::Integer(whole) => number_value(*whole as f64, decimals),
+                    Value::Number(number) => number_value(*number, decimals),
+                    Value::Missing | Value::Text(_) => None,
+                };
                 held.extend(number);
                 number.is_some()
             }
@@ -137,28 +139,23 @@ impl Held {
     }
 
     fn write_to(&mut self, mut column: SerializedColumnWriter<'_>) -> Result<(), String> {
-        let known = Some(&self.known[..]);
+        fn write<D: DataType>(
+            column: &mut SerializedColumnWriter<'_>,
+            held: &mut Vec<D::T>,
+            known: &[i16],
+        ) -> Result<(), String> {
+            column.typed::<D>().write_batch(held, Some(known), None).map_err(|e| e.to_string())?;
+            held.clear();
+            Ok(())
+        }
         match &mut self.cells {
-            Cells::Integers(held) => {
-                column.typed::<Int64Type>().write_batch(held, known, None).map_err(|e| e.to_string())?;
-                held.clear();
-            }
-            Cells::Numbers(held) => {
-                column.typed::<DoubleType>().write_batch(held, known, None).map_err(|e| e.to_string())?;
-                held.clear();
-            }
-            Cells::Texts(held) => {
-                column.typed::<ByteArrayType>().write_batch(held, known, None).map_err(|e| e.to_string())?;
-                held.clear();
-            }
+            Cells::Integers(held) => write::<Int64Type>(&mut column, held, &self.known)?,
+            Cells::Numbers(held) => write::<DoubleType>(&mut column, held, &self.known)?,
+            Cells::Texts(held) => write::<ByteArrayType>(&mut column, held, &self.known)?,
         }
         self.known.clear();
         column.close().map_err(|e| e.to_string())
     }
-}
-
-fn number_of(cell: &Value<'_>) -> f64 {
-    if let Value::Number(number) = cell { *number } else { f64::NAN }
 }
 
 /// A column as it is read.
@@ -253,7 +250,7 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|e| e.to_string())?;
         // Pages may say otherwise, without end.
-        let most = rows_of(&read) + usize::try_from(group.metadata().num_rows()).map_err(|e| e.to_string())?;
+        let most = read.rows() + usize::try_from(group.metadata().num_rows()).map_err(|e| e.to_string())?;
         let cells = group.get_column_reader(column).map_err(|e| e.to_string())?;
         match (cells, &mut read) {
             (ColumnReader::BoolColumnReader(r), Read::Integers(into)) => {
@@ -281,18 +278,20 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
             }
             _ => return Err("its type changes within the file".to_owned()),
         }
-        if rows_of(&read) != most {
+        if read.rows() != most {
             return Err("it has fewer rows than the file says; get it again, whole".to_owned());
         }
     }
     Ok(read)
 }
 
-fn rows_of(read: &Read) -> usize {
-    match read {
-        Read::Integers(column) => column.len(),
-        Read::Numbers(column) => column.len(),
-        Read::Texts(column) => column.len(),
+impl Read {
+    pub(super) fn rows(&self) -> usize {
+        match self {
+            Self::Integers(column) => column.len(),
+            Self::Numbers(column) => column.len(),
+            Self::Texts(column) => column.len(),
+        }
     }
 }
 

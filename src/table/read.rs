@@ -114,11 +114,7 @@ impl Table {
         }
         let rows = match &cells {
             Cells::Csv(rows) => rows.rows(),
-            Cells::Parquet(columns) => match &columns[0] {
-                parquet::Read::Integers(column) => column.len(),
-                parquet::Read::Numbers(column) => column.len(),
-                parquet::Read::Texts(column) => column.len(),
-            },
+            Cells::Parquet(columns) => columns[0].rows(),
         };
         Ok(Self { path: path.to_owned(), names, places, rows, cells, facts })
     }
@@ -232,15 +228,10 @@ impl Table {
         let column = self.place(name)?;
         match &self.cells {
             Cells::Csv(rows) => (0..rows.rows()).for_each(|row| take(row, rows.cell(row, column))),
-            Cells::Parquet(columns) => match &columns[column] {
-                parquet::Read::Texts(known) => {
-                    known.iter().enumerate().for_each(|(row, v)| take(row, v.as_deref().unwrap_or("")));
-                }
-                _ => {
-                    let texts = self.texts(name)?;
-                    texts.iter().enumerate().for_each(|(row, v)| take(row, v.as_deref().unwrap_or("")));
-                }
-            },
+            Cells::Parquet(_) => {
+                let texts = self.texts(name)?;
+                texts.iter().enumerate().for_each(|(row, v)| take(row, v.as_deref().unwrap_or("")));
+            }
         }
         Ok(())
     }
@@ -252,7 +243,8 @@ impl Table {
     pub fn integers(&self, name: &str) -> Result<Vec<Option<i64>>, TableError> {
         const WHAT: &str = "is no whole number; correct it or leave it empty";
         let bad = |row: usize, shown: String| self.cell(row, name, format!("`{shown}` {WHAT}"));
-        self.column(name, |cells, column| match cells {
+        let column = self.place(name)?;
+        match &self.cells {
             Cells::Csv(rows) => {
                 each(known(rows, column), |row, text| text.parse().map_err(|_| bad(row, text.to_owned())))
             }
@@ -267,7 +259,7 @@ impl Table {
                     each(known.iter().map(Option::as_ref), |row, text| Err(bad(row, text.clone())))
                 }
             },
-        })
+        }
     }
 
     /// A column as text; none where a cell is empty.
@@ -275,24 +267,15 @@ impl Table {
     /// # Errors
     /// No such column.
     pub fn texts(&self, name: &str) -> Result<Vec<Option<String>>, TableError> {
-        self.column(name, |cells, column| {
-            Ok(match cells {
-                Cells::Csv(rows) => known(rows, column).map(|text| text.map(str::to_owned)).collect(),
-                Cells::Parquet(columns) => match &columns[column] {
-                    parquet::Read::Integers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
-                    parquet::Read::Numbers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
-                    parquet::Read::Texts(known) => known.iter().map(|v| v.clone().filter(|t| !t.is_empty())).collect(),
-                },
-            })
+        let column = self.place(name)?;
+        Ok(match &self.cells {
+            Cells::Csv(rows) => known(rows, column).map(|text| text.map(str::to_owned)).collect(),
+            Cells::Parquet(columns) => match &columns[column] {
+                parquet::Read::Integers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
+                parquet::Read::Numbers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
+                parquet::Read::Texts(known) => known.iter().map(|v| v.clone().filter(|t| !t.is_empty())).collect(),
+            },
         })
-    }
-
-    fn column<V>(
-        &self,
-        name: &str,
-        get: impl FnOnce(&Cells, usize) -> Result<Vec<Option<V>>, TableError>,
-    ) -> Result<Vec<Option<V>>, TableError> {
-        get(&self.cells, self.place(name)?)
     }
 
     /// Where a column stands.
