@@ -121,10 +121,9 @@ impl Set {
     fn read(path: &Path) -> Result<Option<Self>, TableError> {
         let table = Table::read(path)?;
         let times_s = table.numbers("time_s")?;
-        let has = |name: &str| table.names().iter().any(|column| column == name);
         let beyond =
             |status: &Option<String>| matches!(status.as_deref(), Some("before the video" | "after the video"));
-        let filmed: Vec<bool> = match has("label_status") {
+        let filmed: Vec<bool> = match table.has("label_status") {
             true => table.texts("label_status")?.iter().map(|status| !beyond(status)).collect(),
             false => vec![true; times_s.len()],
         };
@@ -135,7 +134,7 @@ impl Set {
         let to_s = known.next_back().unwrap_or(from_s);
         let mut of = [String::new(), String::new()];
         for (value, name) in of.iter_mut().zip(["subject", "session"]) {
-            if has(name) {
+            if table.has(name) {
                 *value = table.texts(name)?.into_iter().flatten().next().unwrap_or_default();
             }
         }
@@ -143,7 +142,7 @@ impl Set {
     }
 
     fn cells(&self, column: &Column) -> Result<Cells, TableError> {
-        if !self.table.names().contains(&column.name) {
+        if !self.table.has(&column.name) {
             return Ok(Cells::None);
         }
         Ok(match column.kind {
@@ -160,7 +159,7 @@ fn columns(sets: &[Set]) -> Vec<Column> {
         if columns.iter().any(|column| column.name == *name) {
             continue;
         }
-        let mut holders = sets.iter().filter(|set| set.table.names().contains(name));
+        let mut holders = sets.iter().filter(|set| set.table.has(name));
         let is_number = |set: &Set| set.table.numbers_or_nan(name).is_ok();
         columns.push(if TEXTS.contains(&name.as_str()) || !holders.all(is_number) {
             Column::text(name)

@@ -76,7 +76,6 @@ impl Posture {
         let refused = |what: &str| TableError::Read { path: path.to_owned(), what: what.to_owned() };
         let time_s = times(&table)?;
         let names = table.names();
-        let has = |name: &str| names.iter().any(|n| n == name);
         let joints: Vec<String> = names.iter().filter_map(|n| joint_of(n)).map(str::to_owned).collect();
         if joints.is_empty() {
             let names = names.join(", ");
@@ -89,7 +88,7 @@ impl Posture {
             return Err(refused("has no row; labels need frames: look at the video that it was made from"));
         }
         let known = |name: &str| -> Result<Option<Vec<f64>>, TableError> {
-            has(name).then(|| Ok(missing_as_nan(table.numbers(name)?))).transpose()
+            table.has(name).then(|| Ok(missing_as_nan(table.numbers(name)?))).transpose()
         };
         let unknown = || vec![f64::NAN; time_s.len()];
         let mut angles_deg = Vec::with_capacity(joints.len());
@@ -111,7 +110,7 @@ impl Posture {
             sds_deg.push(sds);
         }
         let mut warnings = Vec::new();
-        if has("status") {
+        if table.has("status") {
             let mut lost = vec![false; time_s.len()];
             table.each_text("status", |row, status| lost[row] = status.starts_with("lost"))?;
             warnings.extend(empty_lost(&mut angles_deg, &lost));

@@ -18,7 +18,7 @@ pub fn against(truth: &Path, true_key: &str, made: &Path, key: &str, close: f64)
     let mut all = Vec::new();
     for joint in made.names().iter().filter_map(joint) {
         let name = format!("{joint}_deg");
-        if !truth.names().contains(&name) {
+        if !truth.has(&name) {
             continue;
         }
         let (exact, measured) = (truth.numbers(&name)?, made.numbers(&name)?);

@@ -106,8 +106,7 @@ fn read(tracks: &Path, posture: &Posture) -> Result<(Vec<String>, Frames), Expor
         }
     }
     let (names, x, y) = (table.texts("marker")?, table.numbers("x_px")?, table.numbers("y_px")?);
-    let optional = |name: &str| table.names().iter().any(|n| n == name);
-    let sds = if optional("sd_px") { table.numbers("sd_px")? } else { vec![None; table.rows()] };
+    let sds = if table.has("sd_px") { table.numbers("sd_px")? } else { vec![None; table.rows()] };
     let numbers = table.integers("frame")?;
     let mut markers: Vec<String> = Vec::new();
     let mut rows = Vec::with_capacity(table.rows());
