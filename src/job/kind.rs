@@ -304,6 +304,12 @@ pub trait Maker: Send + Sync {
     fn run(&self, work: &Work<'_>) -> anyhow::Result<Made>;
 }
 
+impl<F: Fn(&Work<'_>) -> anyhow::Result<Made> + Send + Sync> Maker for F {
+    fn run(&self, work: &Work<'_>) -> anyhow::Result<Made> {
+        self(work)
+    }
+}
+
 /// Reads a stage's keys and checks them.
 ///
 /// # Errors
@@ -336,7 +342,8 @@ impl<J: Job> Prepared for Stage<J> {
     }
 
     fn maker(self: Arc<Self>, keys: &Keys, demand: &Demand) -> Arc<dyn Maker> {
-        Arc::new(OneTask { stage: self, keys: keys.clone(), demand: demand.clone() })
+        let (keys, demand) = (keys.clone(), demand.clone());
+        Arc::new(move |work: &Work<'_>| self.job.run(&Order { keys: &keys, demand: &demand, said: &self.said }, work))
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
@@ -361,18 +368,5 @@ impl<J: Job> Prepared for Stage<J> {
 
     fn file(&self, part: &Part) -> &'static str {
         self.job.file(part)
-    }
-}
-
-struct OneTask<J> {
-    stage: Arc<Stage<J>>,
-    keys: Keys,
-    demand: Demand,
-}
-
-impl<J: Job> Maker for OneTask<J> {
-    fn run(&self, work: &Work<'_>) -> anyhow::Result<Made> {
-        let order = Order { keys: &self.keys, demand: &self.demand, said: &self.stage.said };
-        self.stage.job.run(&order, work)
     }
 }
