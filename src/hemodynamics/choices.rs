@@ -2,14 +2,15 @@
 
 pub use lunula_hemodynamics::LoadPath as Pressed;
 use lunula_hemodynamics::{Calibration, Collapse, Optics, Parameters};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::HemodynamicsError;
 use super::solve::rest;
 use crate::words::Words;
 
 /// How light depends on the capillaries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OpticsChoice {
     /// Equation 6.
     #[default]
@@ -44,12 +45,6 @@ impl Words for OpticsChoice {
         (Self::Quadratic, "quadratic", "Equation 8, two terms of its series"),
         (Self::Linear, "linear", "The tangent of equation 6 at rest"),
     ];
-}
-
-impl Serialize for OpticsChoice {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(self.word())
-    }
 }
 
 impl Words for Collapse {

@@ -32,11 +32,6 @@ pub(super) fn write(result: &FitResult, start: &Parameters, at: &Path, path: &Pa
 fn write_free(group: &Group, k: usize, start: &Parameters, table: &mut TableWriter) -> Result<(), TableError> {
     let symbol = group.symbols[k];
     let of = |values: &Option<Vec<f64>>| Value::from(values.as_ref().map(|values| values[k]));
-    let bound = match group.at_bound {
-        None => "",
-        Some(Bound::Lower) => "lower",
-        Some(Bound::Upper) => "upper",
-    };
     table.write(&[
         Value::Text(&symbol.to_string()),
         Value::Missing,
@@ -45,7 +40,7 @@ fn write_free(group: &Group, k: usize, start: &Parameters, table: &mut TableWrit
         of(&group.standard_errors),
         of(&group.interval[0]),
         of(&group.interval[1]),
-        Value::Text(bound),
+        Value::Text(group.at_bound.map_or("", Bound::word)),
     ])
 }
 

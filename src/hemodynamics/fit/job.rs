@@ -9,9 +9,7 @@ use lunula_hemodynamics::{
 
 use super::parameter_files::{parameter_files, parameter_paths};
 use super::recording::{ReadRecording, photodiodes, read, signs};
-use super::report::{
-    FitFigures, FitReport, FittedPhotodiode, RecordingReport, correlations, groups, noises, result_text, stopped,
-};
+use super::report::{FitFigures, FitReport, FittedPhotodiode, RecordingReport, noises, result_text, stopped};
 use super::{FitInputs, FitOptions, estimates, figure, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
@@ -176,7 +174,7 @@ pub fn fit(
         recordings: recording_reports(inputs, &ready.recordings, &curves, &result),
         stopped: words,
         converged,
-        free: groups(&result, &ready.start),
+        free: result.groups.clone(),
         photodiodes: result
             .photodiodes
             .iter()
@@ -192,7 +190,7 @@ pub fn fit(
             })
             .collect(),
         names: result.names.clone(),
-        correlations: correlations(&result),
+        correlations: result.correlations.clone(),
         residual_sd_v: result.residual_sd_v,
         r2: result.r2,
         values: result.values,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::job::{fit, plan, steps};
 use super::{FitInputs, FitOptions, FitReport};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task, read_parameters};
-use crate::hemodynamics::model::Parameters;
+use crate::hemodynamics::model::{Parameters, Symbol};
 use crate::job::{
     Demand, Foreseen, Job, Keys, Kind, Made, OptionFault, Order, Part, Prepared, Quality, Role, Takes, Work, prepare,
 };
@@ -99,8 +99,8 @@ fn stated(report: &FitReport) -> Vec<Quality> {
     let mut quality = vec![Quality::stated("voltages", report.residual_sd_v, "V, SD of the residuals")];
     for group in &report.free {
         let errors = group.standard_errors.iter().flatten();
-        for ((name, value), error) in group.names.iter().zip(&group.values).zip(errors) {
-            quality.push(Quality::stated(name, (error / value).abs(), "of its value, standard error"));
+        for ((symbol, value), error) in group.symbols.iter().zip(&group.values).zip(errors) {
+            quality.push(Quality::stated(&symbol.to_string(), (error / value).abs(), "of its value, standard error"));
         }
     }
     quality.retain(|one| one.value.is_finite());
@@ -109,11 +109,11 @@ fn stated(report: &FitReport) -> Vec<Quality> {
 
 /// How far the values are from the true ones.
 fn against(report: &FitReport, truth: &Parameters) -> Vec<Quality> {
-    let one = |(name, value): (&String, &f64)| {
-        let is = truth.get(name.parse().ok()?)?;
+    let one = |(symbol, value): (&Symbol, &f64)| {
+        let is = truth.get(*symbol)?;
         let error = ((value - is) / is).abs();
         let unit = "of its true value".to_owned();
-        error.is_finite().then_some(Quality { what: name.clone(), value: error, unit, against_truth: true })
+        error.is_finite().then_some(Quality { what: symbol.to_string(), value: error, unit, against_truth: true })
     };
-    report.free.iter().flat_map(|group| group.names.iter().zip(&group.values)).filter_map(one).collect()
+    report.free.iter().flat_map(|group| group.symbols.iter().zip(&group.values)).filter_map(one).collect()
 }

@@ -17,4 +17,4 @@ pub use fitted::{own_parameters, voltages};
 pub use job::{fit, plan as fit_plan};
 pub use options::{FitInputs, FitOptions};
 pub use recording::{Between, PhotodiodeColumn, RecordingColumns};
-pub use report::{FitFigures, FitReport, FittedGroup, FittedPhotodiode, RecordingReport};
+pub use report::{FitFigures, FitReport, FittedPhotodiode, RecordingReport};

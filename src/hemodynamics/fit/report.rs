@@ -3,30 +3,10 @@
 use std::path::PathBuf;
 
 use lunula_hemodynamics::noise::Slow;
-use lunula_hemodynamics::{Bound, Combination, FitResult, Rival, Stop};
+use lunula_hemodynamics::{Combination, Group, Rival, Stop};
 use serde::Serialize;
 
 use crate::job::Report;
-
-/// A free group of parameters.
-#[derive(Debug, Clone, Serialize)]
-pub struct FittedGroup {
-    /// Their names in files.
-    pub names: Vec<String>,
-    /// What they were at the start, each in its unit.
-    pub start: Vec<f64>,
-    /// Their fitted values.
-    pub values: Vec<f64>,
-    /// Their standard errors; none where the recordings don't determine them, or at a bound.
-    pub standard_errors: Option<Vec<f64>>,
-    /// Below and above: where the squares, all else fitted again, are higher by four variances of the noise, which is
-    /// two standard errors for what acts straight and right for what does not. None where a bound comes first.
-    pub interval: [Option<Vec<f64>>; 2],
-    /// `lower` or `upper` where the fit ended on that bound.
-    pub at_bound: Option<&'static str>,
-    /// Whether the recordings determine it.
-    pub identifiable: bool,
-}
 
 /// A photodiode's offset and scaling.
 #[derive(Debug, Clone, Serialize)]
@@ -93,13 +73,13 @@ pub struct FitFigures {
     /// Whether it stopped because there was nothing left to gain.
     pub converged: bool,
     /// The free groups.
-    pub free: Vec<FittedGroup>,
+    pub free: Vec<Group>,
     /// Offsets and scalings.
     pub photodiodes: Vec<FittedPhotodiode>,
     /// What the rows and columns of the correlations are.
     pub names: Vec<String>,
-    /// Correlations of the estimates; none where one has no standard error.
-    pub correlations: Vec<Vec<Option<f64>>>,
+    /// Correlations of the estimates; NaN, in JSON null, where one has no standard error.
+    pub correlations: Vec<Vec<f64>>,
     /// SD of the residuals, V; where photodiodes differ in noise, that of the quietest.
     pub residual_sd_v: f64,
     /// Share of the variance that is explained.
@@ -151,28 +131,8 @@ pub(super) fn stopped(stop: Stop) -> (&'static str, bool) {
     }
 }
 
-/// The free groups of a result.
-pub(super) fn groups(result: &FitResult, start: &lunula_hemodynamics::Parameters) -> Vec<FittedGroup> {
-    let one = |group: &lunula_hemodynamics::Group| FittedGroup {
-        names: group.symbols.iter().map(ToString::to_string).collect(),
-        start: group.symbols.iter().filter_map(|&symbol| start.get(symbol)).collect(),
-        values: group.values.clone(),
-        standard_errors: group.standard_errors.clone(),
-        interval: group.interval.clone(),
-        at_bound: group.at_bound.map(|bound| if bound == Bound::Lower { "lower" } else { "upper" }),
-        identifiable: group.identifiable,
-    };
-    result.groups.iter().map(one).collect()
-}
-
 /// The noise of the photodiodes of a recording, in words.
 pub(super) fn noises(slow: &[Option<Slow>]) -> Vec<String> {
     let one = |slow: &Option<Slow>| slow.map_or("taken as white".to_owned(), |slow| slow.to_string());
     slow.iter().map(one).collect()
-}
-
-/// Correlations, none where they are not known.
-pub(super) fn correlations(result: &FitResult) -> Vec<Vec<Option<f64>>> {
-    let known = |value: &f64| value.is_finite().then_some(*value);
-    result.correlations.iter().map(|row| row.iter().map(known).collect()).collect()
 }

@@ -57,10 +57,13 @@ pub struct FitResult {
 }
 
 /// A free group after the fit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Group {
     /// The parameters.
+    #[serde(rename = "names")]
     pub symbols: Vec<Symbol>,
+    /// What they were at the start, each in its unit.
+    pub start: Vec<f64>,
     /// Their fitted values, each in its unit.
     pub values: Vec<f64>,
     /// Their standard errors, each in its unit; `None` where the data don't determine them, or at a bound.
@@ -78,12 +81,23 @@ pub struct Group {
 }
 
 /// A bound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Bound {
     /// The lower one.
     Lower,
     /// The upper one.
     Upper,
+}
+
+impl Bound {
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Bound::Lower => "lower",
+            Bound::Upper => "upper",
+        }
+    }
 }
 
 /// A photodiode after the fit.

@@ -119,6 +119,12 @@ impl fmt::Display for Symbol {
     }
 }
 
+impl serde::Serialize for Symbol {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(self)
+    }
+}
+
 impl FromStr for Symbol {
     type Err = String;
 

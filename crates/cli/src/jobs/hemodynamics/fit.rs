@@ -109,13 +109,13 @@ impl Command for FitArgs {
         for group in &report.free {
             let error = |k: usize| match (&group.standard_errors, group.at_bound) {
                 (Some(errors), _) => format!("+- {:.2e}", errors[k]),
-                (None, Some(bound)) => format!("at its {bound} bound"),
+                (None, Some(bound)) => format!("at its {} bound", bound.word()),
                 (None, None) => "not determined".to_owned(),
             };
             let end = |k: usize, which: usize, open: &str| {
                 group.interval[which].as_ref().map_or(open.to_owned(), |values| format!("{:.3e}", values[k]))
             };
-            for (k, name) in group.names.iter().enumerate() {
+            for (k, name) in group.symbols.iter().map(ToString::to_string).enumerate() {
                 let interval = match (&group.interval[0], &group.interval[1]) {
                     (None, None) => String::new(),
                     _ => format!("two standard errors {} to {}; ", end(k, 0, "its bound"), end(k, 1, "its bound")),
