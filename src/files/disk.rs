@@ -11,7 +11,6 @@ const FEW: usize = 16;
 /// Calls at a time: the disk does them together.
 const AT_ONCE: usize = 8;
 
-/// Writes a file.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     faults::next()?;
     fs::write(path, bytes)
@@ -29,7 +28,6 @@ pub(super) fn link(from: &Path, to: &Path) -> io::Result<()> {
     fs::hard_link(from, to)
 }
 
-/// Makes a folder.
 pub(super) fn make_folder(path: &Path) -> io::Result<()> {
     faults::next()?;
     fs::create_dir(path)

@@ -127,7 +127,6 @@ pub enum LogError {
     Ambient(#[from] AmbientError),
 }
 
-/// The formats of logs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
     Text,

@@ -64,7 +64,6 @@ impl CsvCells {
         self.rows.len()
     }
 
-    /// The line of a row.
     pub(super) fn line(&self, row: usize) -> u64 {
         self.rows[row].1
     }

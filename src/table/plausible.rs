@@ -101,7 +101,6 @@ pub(super) fn check_pages(file: &File, metadata: &ParquetMetaData) -> Result<(),
     if cells.saturating_mul(CELL_BYTES) > most(size) { Err(FALSE.to_owned()) } else { Ok(()) }
 }
 
-/// What the header of a page says.
 struct PageHead {
     head: u64,
     packed: u64,
@@ -122,7 +121,6 @@ fn snappy_length(file: &File, at: u64, packed: u64) -> Option<u64> {
     Some(bytes[..=end].iter().rev().fold(0, |length, byte| length << 7 | u64::from(byte & 0x7f)))
 }
 
-/// The header of the page at a place.
 fn page_head(file: &File, at: u64, room: usize) -> Result<PageHead, Bad> {
     let mut bytes = vec![0; room];
     file.read_exact_at(&mut bytes, at).map_err(|_| Bad::Unread)?;

@@ -75,7 +75,6 @@ fn detection(working_size_px: u32) -> String {
     format!("detect on {working_size_px} px")
 }
 
-/// One photograph's truth.
 #[derive(Debug)]
 struct Truth {
     outline: Outline,
@@ -187,7 +186,7 @@ fn read_picture(photo: &Photo) -> anyhow::Result<Photograph> {
 
 fn read_truth(photo: &Photo, truth: &Path) -> anyhow::Result<Truth> {
     let name = format!("{}/{}", photo.pose, photo.subject);
-    let picture = Photograph::read(&photo.path).with_context(|| photo.file.clone())?;
+    let picture = read_picture(photo)?;
     let file = truth.join(format!("outlines/{name}.json"));
     let nail = read_annotated(&file, &picture, Drawn::Auto)?.nails.swap_remove(0);
     let (outline, axis) = (nail.outline?, nail.axis.with_context(|| format!("{}: no axis", file.display()))?);

@@ -23,7 +23,6 @@ pub fn plan(
 /// What is known of the recordings before they are opened; none: not known.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(in crate::align) struct Foreknown {
-    /// The joints' names.
     pub(in crate::align) joints: Option<Vec<String>>,
     /// Frames with angles.
     pub(in crate::align) frames: Option<usize>,
@@ -33,7 +32,6 @@ pub(in crate::align) struct Foreknown {
     pub(in crate::align) led: Option<bool>,
     /// Lit rows, and all.
     pub(in crate::align) lit_rows: Option<[usize; 2]>,
-    /// Photodiodes.
     pub(in crate::align) photodiodes: Option<usize>,
 }
 

@@ -21,7 +21,6 @@ pub struct LoadRange {
     pub step_pa: f64,
 }
 
-/// The most loads of a curve.
 const MOST_LOADS: f64 = 1e5;
 
 impl LoadRange {

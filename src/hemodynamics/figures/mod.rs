@@ -9,7 +9,6 @@ use crate::figure::{Chart, Item};
 
 /// Width of a picture.
 pub const WIDTH: u32 = 1100;
-/// Height of a panel.
 pub(super) const HEIGHT: u32 = 340;
 /// A newton on a square centimetre, Pa.
 pub const N_PER_CM2: f64 = 1e4;

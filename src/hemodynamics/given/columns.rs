@@ -92,7 +92,6 @@ impl Rows {
         &self.names
     }
 
-    /// Whether it is a log.
     pub(in crate::hemodynamics) fn is_log(&self) -> bool {
         matches!(self.from, Source::Log(_))
     }
@@ -302,7 +301,6 @@ impl Rows {
     }
 }
 
-/// A channel of a log.
 fn channel<'a>(lit: &'a LitRows, name: &str) -> Option<&'a Channel> {
     lit.samples.photodiodes.iter().chain(&lit.samples.forces).find(|channel| channel.name == name)
 }

@@ -25,9 +25,7 @@ pub(super) struct Found {
     /// The byte at which the rows begin, and the lines before it.
     pub(super) body: usize,
     pub(super) lines_before: u64,
-    /// The line with the names.
     pub(super) names_line: u64,
-    /// The line with the units.
     pub(super) units_line: Option<u64>,
 }
 

@@ -22,7 +22,6 @@ use crate::table::DELIMITERS;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::log) struct Layout {
     pub(in crate::log) delimiter: u8,
-    /// The columns' names.
     pub(in crate::log) names: Vec<String>,
     /// Where the rows begin: the byte, and the lines before it.
     pub(in crate::log) body: usize,

@@ -17,7 +17,6 @@ use lunula_live::wire::is_missing;
 
 use crate::log::lines::cell::{self, Numbers};
 
-/// The seconds of a day.
 pub(in crate::log) const DAY_S: f64 = 86_400.0;
 
 /// The unit of time stamps that are numbers.

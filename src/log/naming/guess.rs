@@ -40,7 +40,6 @@ pub(in crate::log) fn role_of(name: &str) -> Option<Role> {
     Role::of(name).or_else(|| role_of_name(name))
 }
 
-/// The role that a name suggests.
 pub(in crate::log) fn role_of_name(name: &str) -> Option<Role> {
     let words = words(name);
     let all: Vec<&str> = words.iter().map(String::as_str).collect();

@@ -1,6 +1,5 @@
 //! What a column of a log is for, and the contract's names.
 
-/// What a column is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(in crate::log) enum Role {
     /// `time_s`

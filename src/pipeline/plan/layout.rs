@@ -159,7 +159,6 @@ fn lay_out_stage(
     Ok((rows.names, rows.left_out))
 }
 
-/// The items of a reference.
 fn items_of(
     spec: &Spec,
     reference: &Reference,

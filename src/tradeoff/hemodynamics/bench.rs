@@ -16,7 +16,6 @@ pub(in crate::tradeoff) const AUTO: &str = "lunula";
 /// A response's length, s, and its outputs a second.
 const SECONDS: u32 = 4;
 const RATE: u32 = 100;
-/// The reference's tolerance.
 const REFERENCE: f64 = 1e-13;
 
 /// A step response to be solved.

@@ -7,9 +7,7 @@ use super::{ERROR, SOLVING};
 use crate::tradeoff::measure::rows::Measured;
 use crate::tradeoff::measure::timing::{Effort, in_turns};
 
-/// Tolerances that are asked for.
 const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
-/// Fixed steps, s.
 const FIXED_S: [f64; 4] = [1e-2, 5e-3, 2e-3, 1e-3];
 /// Samples a second of live signals.
 const LIVE_HZ: [u32; 3] = [100, 500, 1000];

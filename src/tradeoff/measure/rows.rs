@@ -124,7 +124,6 @@ pub(in crate::tradeoff) fn write_table(rows: &[&Row], staging: &Staging) -> anyh
     write_file("tradeoff.csv", &writer.into_inner().context("tradeoff.csv")?, staging)
 }
 
-/// A file of the results.
 pub(in crate::tradeoff) fn write_file(name: &str, bytes: &[u8], staging: &Staging) -> anyhow::Result<()> {
     let place = staging.place(name)?;
     std::fs::write(&place, bytes).with_context(|| place.display().to_string())

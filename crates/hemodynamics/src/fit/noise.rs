@@ -34,7 +34,6 @@ pub struct Slow {
     slow_s: f64,
     /// SD of the pulse, in that of the white noise.
     pulse: f64,
-    /// Its frequency.
     hz: f64,
 }
 

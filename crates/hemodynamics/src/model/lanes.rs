@@ -22,7 +22,6 @@ impl<const S: usize> InputLanes<S> {
         }
     }
 
-    /// The inputs of one lane.
     pub(crate) fn lane(&self, lane: usize) -> Inputs {
         Inputs {
             upstream_pa: self.upstream[lane],

@@ -71,7 +71,6 @@ pub enum ParameterFault {
     Syntax(String),
 }
 
-/// The most units of a model.
 const MOST_UNITS: usize = 1000;
 
 /// The vessels of the thesis' table, literal powers of ten.
@@ -220,7 +219,6 @@ impl Parameters {
         Ok(changed)
     }
 
-    /// The place of a parameter.
     fn place(&mut self, symbol: Symbol) -> Option<&mut f64> {
         Some(match symbol {
             Symbol::Stiffness(site) => &mut self.vessel(site)?.stiffness_n_per_m,

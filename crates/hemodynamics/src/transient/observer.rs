@@ -12,7 +12,6 @@ pub(crate) struct AcceptedStep<'a, const S: usize> {
     pub(crate) table: &'static Table<S>,
     /// Lumens and rates of each wall at the stages.
     pub(crate) stages: [&'a [[f64; S]]; 2],
-    /// The inputs at the stages.
     pub(crate) inputs: &'a InputLanes<S>,
     /// The times asked for that lie in the step, its end included.
     pub(crate) times_s: &'a [f64],

@@ -34,7 +34,6 @@ pub(in crate::log) fn stream(path: &Path, columns: &Columns) -> Result<(Stream, 
     Ok((stream, names, notes))
 }
 
-/// Reads a recording.
 pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
     let wrong = |what: String| LogError::Columns { path: path.to_owned(), what };
     let (stream, names, notes) = stream(path, columns)?;
