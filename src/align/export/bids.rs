@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::{ANGLE_DECIMALS, ExportError, TIME_DECIMALS, fixed, write};
+use super::{ANGLE_DECIMALS, ExportError, TIME_DECIMALS, fixed};
 use crate::align::{Posture, Tie};
 use crate::files::Places;
 use crate::input;
@@ -100,7 +100,7 @@ pub(crate) fn bids(
     files.push((file("channels.tsv"), channels.table(posture)));
     files.push((file("motion.tsv"), channels.rows(posture, &times_s)));
     for (path, text) in &files {
-        write(&places.place(path)?, path, text)?;
+        places.write(path, text)?;
     }
     Ok(files.into_iter().map(|(path, _)| path).collect())
 }

@@ -9,20 +9,16 @@ use lunula_live::wire::{self, is_missing, with_decimal_comma};
 #[derive(Debug, Clone, Default)]
 pub(in crate::log) struct Numbers {
     comma_allowed: bool,
-    /// Whether a decimal point and a decimal comma have been seen.
+    /// Whether a decimal point has been seen.
     point: bool,
-    comma: bool,
+    /// Whether a decimal comma has been seen.
+    pub(in crate::log) comma: bool,
 }
 
 impl Numbers {
     /// For a file whose cells are separated by `delimiter`.
     pub(in crate::log) fn of(delimiter: u8) -> Self {
         Self { comma_allowed: delimiter != b',', ..Self::default() }
-    }
-
-    /// Whether numbers had a decimal comma.
-    pub(in crate::log) fn had_commas(&self) -> bool {
-        self.comma
     }
 
     /// The number in a cell without space around it; NaN where it is missing.
@@ -112,7 +108,7 @@ mod tests {
         let mut numbers = Numbers::of(b';');
         assert_eq!(numbers.read(b"3").unwrap(), 3.0);
         assert_eq!(numbers.read(b"-1,25e2").unwrap(), -125.0);
-        assert!(numbers.had_commas());
+        assert!(numbers.comma);
         assert!(numbers.read(b"1.234,5").is_err() && numbers.read(b"1,2,3").is_err());
         assert!(numbers.read(b"1.5").unwrap_err().contains("decimal points here"));
         assert!(numbers.read(&[b','; 100]).is_err());

@@ -102,7 +102,7 @@ impl Rows<'_> {
             }
             raw.places.push(line);
         }
-        if numbers.had_commas() {
+        if numbers.comma {
             raw.notes.push("numbers have decimal commas".to_owned());
         }
         for (&(role, _), values) in self.choice.columns.iter().zip(channels) {

@@ -68,7 +68,7 @@ impl Free {
 #[derive(Clone, Debug)]
 pub(super) struct Coordinate {
     pub(super) symbols: Vec<Symbol>,
-    start: Vec<f64>,
+    pub(super) start: Vec<f64>,
     /// `None`: by a factor. Otherwise the change that counts as 1.
     scale: Option<f64>,
     pub(super) lower: f64,

@@ -105,7 +105,7 @@ pub(super) fn certainty(problem: &Problem, best: &Evaluation) -> Certainty {
             let errors = || coordinates[q].speeds(best.at()[q]).iter().map(|speed| speed * sd).collect();
             Group {
                 symbols: coordinates[q].symbols.clone(),
-                start: coordinates[q].symbols.iter().filter_map(|&symbol| problem.start.get(symbol)).collect(),
+                start: coordinates[q].start.clone(),
                 values: coordinates[q].values(best.at()[q]),
                 standard_errors: (identifiable && at_bound[q].is_none()).then(errors),
                 interval: [None, None],
