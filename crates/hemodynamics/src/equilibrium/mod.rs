@@ -144,14 +144,8 @@ impl GaveUp {
 }
 
 fn check(inputs: &Inputs) -> Result<(), EquilibriumFault> {
-    let named = [
-        ("P_H", inputs.upstream_pa),
-        ("P_L", inputs.downstream_pa),
-        ("P_F1", inputs.proximal_pa),
-        ("P_F2", inputs.distal_pa),
-    ];
-    match named.iter().find(|(_, value)| !value.is_finite()) {
-        Some(&(what, value)) => Err(EquilibriumFault::NotFinite { what, value }),
+    match inputs.not_finite() {
+        Some((what, value)) => Err(EquilibriumFault::NotFinite { what, value }),
         None => Ok(()),
     }
 }

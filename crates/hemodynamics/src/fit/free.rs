@@ -84,20 +84,15 @@ impl Coordinate {
             values.push(start.get(symbol).ok_or(FitFault::NoSuchParameter { symbol })?);
         }
         let pressure = (start.upstream_pa() - start.downstream_pa()).abs();
-        let scale = match first {
+        let scale_of = |symbol: Symbol| match symbol {
             Symbol::Upstream | Symbol::Downstream => Some(if pressure > 0.0 { pressure } else { 1e4 }),
             Symbol::Offset(_) | Symbol::Scaling(_) => Some(voltage_v),
             Symbol::LoadShare(_) => Some(1.0),
             _ => None,
         };
-        let alone = |symbol: &Symbol| {
-            matches!(
-                symbol,
-                Symbol::Upstream | Symbol::Downstream | Symbol::Offset(_) | Symbol::Scaling(_) | Symbol::LoadShare(_)
-            )
-        };
+        let scale = scale_of(first);
         if free.symbols.len() > 1
-            && let Some(&symbol) = free.symbols.iter().find(|symbol| alone(symbol))
+            && let Some(&symbol) = free.symbols.iter().find(|symbol| scale_of(**symbol).is_some())
         {
             return Err(FitFault::Tied { symbol });
         }

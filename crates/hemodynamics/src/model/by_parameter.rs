@@ -66,12 +66,13 @@ impl Tangent {
             Site::Vein => Some(n),
         };
         match symbol {
-            Symbol::Stiffness(site) | Symbol::Mass(site) | Symbol::Damping(site) | Symbol::Area(site) => {
-                if let Some(j) = wall_of(site) {
-                    self.add_to_wall(parameters, j, symbol, speed);
-                }
-            }
-            Symbol::Diameter(site) | Symbol::Length(site) | Symbol::Count(site) => {
+            Symbol::Stiffness(site)
+            | Symbol::Mass(site)
+            | Symbol::Damping(site)
+            | Symbol::Area(site)
+            | Symbol::Diameter(site)
+            | Symbol::Length(site)
+            | Symbol::Count(site) => {
                 if let Some(j) = wall_of(site) {
                     self.add_to_wall(parameters, j, symbol, speed);
                 }

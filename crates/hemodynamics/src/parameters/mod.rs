@@ -266,6 +266,7 @@ impl Parameters {
 
     /// Whether the equations' coefficients are numbers that can be computed with.
     fn check_products(&self, faults: &mut Vec<String>) {
+        let mut far = |what: String| faults.push(format!("  {what}: these values are too far apart to compute with"));
         for (j, wall) in self.walls().enumerate() {
             let site = Site::of_wall(j, self.units.len());
             let d = wall.diameter_m;
@@ -280,22 +281,17 @@ impl Parameters {
             ];
             for (product, value) in products {
                 if !(value.is_normal() && value > 0.0) {
-                    faults.push(format!(
-                        "  {site}: {product} = {value:e}: these values are too far apart to compute with"
-                    ));
+                    far(format!("{site}: {product} = {value:e}"));
                 }
             }
             if !(wall.damping_n_s_per_m / wall.mass_kg).is_finite() {
-                faults.push(format!("  {site}: b / m is infinite: these values are too far apart to compute with"));
+                far(format!("{site}: b / m is infinite"));
             }
         }
         for i in 0..self.units.len() {
             let alpha = self.alpha_per_m2(i);
             if !(alpha.is_normal() && alpha > 0.0) {
-                faults.push(format!(
-                    "  unit {}: alpha = {alpha:e}: these values are too far apart to compute with",
-                    i + 1
-                ));
+                far(format!("unit {}: alpha = {alpha:e}", i + 1));
             }
         }
     }
