@@ -55,13 +55,10 @@ pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs
     let joints = known.joints.as_ref().map_or("all".to_owned(), |joints| joints.join(", "));
     let frames = known.frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
     let photodiodes = known.photodiodes.map_or("the".to_owned(), |photodiodes| photodiodes.to_string());
-    let asked = |wanted: Option<bool>, option: &str| match wanted {
-        Some(true) => (true, option.to_owned()),
-        _ => (false, "not asked for".to_owned()),
+    let asked = |step: &'static str, wanted: Option<bool>, option: &str| match wanted {
+        Some(true) => Step::new(step, true, option.to_owned()),
+        _ => Step::new(step, false, "not asked for".to_owned()),
     };
-    let (mot, mot_why) = asked(outputs.map(|o| o.mot.is_some()), "--mot");
-    let (bids, bids_why) = asked(outputs.map(|o| o.bids.is_some()), "--bids");
-    let (dlc, dlc_why) = asked(outputs.map(|o| o.dlc.is_some()), "--dlc");
     let figures = outputs.is_none_or(|o| o.figures);
     vec![
         Step::new("labels of joints", true, format!("{joints} from {frames}")),
@@ -98,9 +95,9 @@ pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs
             sync != Some(Sync::Correlate),
             if sync == Some(Sync::Correlate) { "they make it" } else { "do they follow the angles?" }.to_owned(),
         ),
-        Step::new("OpenSim motion file", mot, mot_why),
-        Step::new("BIDS Motion folder", bids, bids_why),
-        Step::new("DeepLabCut table", dlc, dlc_why),
+        asked("OpenSim motion file", outputs.map(|o| o.mot.is_some()), "--mot"),
+        asked("BIDS Motion folder", outputs.map(|o| o.bids.is_some()), "--bids"),
+        asked("DeepLabCut table", outputs.map(|o| o.dlc.is_some()), "--dlc"),
         Step::figures(figures, "of the tie and of the labels"),
     ]
 }

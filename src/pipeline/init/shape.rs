@@ -54,13 +54,13 @@ impl PlaceNames<'_> {
 
 /// The pattern of most of the files.
 pub(super) fn shape(paths: &[String], places: PlaceNames<'_>) -> Option<NamePattern> {
-    // Files of one depth, ending and top folder are of one pattern.
-    let mut groups: BTreeMap<(usize, String, bool), Vec<&String>> = BTreeMap::new();
+    // Files of one depth and ending are of one pattern.
+    let mut groups: BTreeMap<(usize, String), Vec<&String>> = BTreeMap::new();
     for path in paths {
         let ending = path.rsplit_once('.').map_or("", |(_, ending)| ending).to_owned();
-        groups.entry((path.matches('/').count(), ending, false)).or_default().push(path);
+        groups.entry((path.matches('/').count(), ending)).or_default().push(path);
     }
-    let (_, group) = groups.into_iter().max_by_key(|((depth, ..), group)| (group.len(), usize::MAX - depth))?;
+    let (_, group) = groups.into_iter().max_by_key(|((depth, _), group)| (group.len(), usize::MAX - depth))?;
     let parts: Vec<Vec<&str>> = group.iter().map(|path| stemmed(path)).collect();
     let depth = parts[0].len();
     let differs: Vec<usize> = (0..depth).filter(|&at| parts.iter().any(|part| part[at] != parts[0][at])).collect();

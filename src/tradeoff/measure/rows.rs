@@ -104,22 +104,9 @@ pub(in crate::tradeoff) fn write_table(rows: &[&Row], staging: &Staging) -> anyh
         let [error, run_s, low_s, high_s] = [row.error, row.run_s, row.run_low_s, row.run_high_s].map(number);
         let [work, repeats] = [row.work, row.repeats].map(|count| count.to_string());
         let [knee, default, peer] = [row.knee, row.default, row.peer].map(|is| is.to_string());
-        let cells = [
-            row.job,
-            &row.setting,
-            &error,
-            &row.error_unit,
-            &run_s,
-            &work,
-            row.choice,
-            &low_s,
-            &high_s,
-            &repeats,
-            &knee,
-            &default,
-            &peer,
-        ];
-        writer.write_record(cells)?;
+        let first = [row.job, &row.setting, &error, &row.error_unit, &run_s, &work, row.choice];
+        let last = [&low_s, &high_s, &repeats, &knee, &default, &peer];
+        writer.write_record(first.into_iter().chain(last.map(String::as_str)))?;
     }
     write_file("tradeoff.csv", &writer.into_inner().context("tradeoff.csv")?, staging)
 }
