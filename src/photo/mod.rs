@@ -34,7 +34,7 @@ pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
 pub use pose::THESIS_POSES;
 pub(crate) use pose::is_of_thesis;
 pub use results::NailRow;
-pub(crate) use results::Scratch;
+pub(crate) use results::{Scratch, write_npy};
 pub(crate) use set::MASKS;
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{

@@ -10,7 +10,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use ndarray_npy::WriteNpyExt;
 use rayon::Scope;
 
 use super::draw::{Thumbnails, draw};
@@ -30,8 +29,8 @@ use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
 use crate::nailvideo::press::{Recording, USE, noise_sd, reversed, rows};
 use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells, discs};
-use crate::photo::Mistaken;
 use crate::photo::outline::{Source, ToDraw};
+use crate::photo::{Mistaken, write_npy};
 use crate::photograph::Photograph;
 use crate::stages::{Stages, left_out};
 use crate::video::{Frame, Info, Item, Video};
@@ -410,9 +409,7 @@ impl Job<'_> {
             let [mean, sd] = sums.maps();
             for (map, what) in [(mean, "mean"), (sd, "sd")] {
                 let name = format!("maps/{}-{}-{what}.npy", sums.window.from_s, sums.window.to_s);
-                let mut bytes = Vec::new();
-                map.write_npy(&mut bytes).map_err(|why| self.staging.refused(&name, why))?;
-                self.staging.write(&name, &bytes)?;
+                write_npy(&map, self.staging, &name)?;
             }
         }
         let mut courses = BTreeMap::new();

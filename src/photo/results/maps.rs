@@ -1,15 +1,13 @@
 //! Maps, sums and figures of every pose.
 
-use std::io::{BufWriter, Write};
-
 use ndarray::Array2;
-use ndarray_npy::WriteNpyExt;
+use ndarray_npy::{WritableElement, WriteNpyExt};
 use rayon::prelude::*;
 
 use super::draw::{DrawnPose, DrawnSheet, draw_pose, draw_sheets};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Normalization;
-use crate::photo::sums::{Member, Partials, Sums, part_name, write_part, write_partial};
+use crate::photo::sums::{Member, Partials, Sums, bytes, bytes_of_part, part_name};
 use crate::stages::Stages;
 
 /// A pose's sums, for [`gather`](fn@crate::photo::gather); returns what the list of them says.
@@ -22,7 +20,8 @@ pub(in crate::photo) fn write_sums(
 ) -> Result<Member, WriteError> {
     stages.time("write sums", || {
         let name = part_name(pose);
-        let file = write_part(&staging.place(&name)?, pose, sums, with).map_err(|why| staging.refused(&name, why))?;
+        let file = bytes_of_part(pose, sums, with).map_err(|why| staging.refused(&name, why))?;
+        staging.write(&name, &file)?;
         Ok(Member::of(sums, &file))
     })
 }
@@ -42,7 +41,7 @@ pub(in crate::photo) fn write_pose(
         write_npy(&maps.sd, staging, &format!("maps/{pose}-sd.npy"))?;
         write_npy(&maps.count, staging, &format!("maps/{pose}-count.npy"))?;
         let name = format!("maps/{pose}.partial.npz");
-        write_partial(&staging.place(&name)?, pose, sums, with).map_err(|why| staging.refused(&name, why))
+        staging.write(&name, &bytes(pose, sums, with).map_err(|why| staging.refused(&name, why))?)
     })?;
     let draw = || stages.time("figures", || draw_pose(pose, sums.subjects().len(), &maps, staging));
     figures.then(draw).transpose()
@@ -65,13 +64,13 @@ pub(in crate::photo) fn write_maps(
     staging.sync_meanwhile(|| stages.time("sheets", || draw_sheets(drawn.into_iter().flatten().collect(), staging)))
 }
 
-fn write_npy<T: ndarray_npy::WritableElement>(
+/// Writes an array as the result `name`.
+pub(crate) fn write_npy<T: WritableElement>(
     array: &Array2<T>,
     staging: &Staging,
     name: &str,
 ) -> Result<(), WriteError> {
-    let file = std::fs::File::create(staging.place(name)?).map_err(|why| staging.refused(name, why))?;
-    let mut file = BufWriter::new(file);
-    array.write_npy(&mut file).map_err(|why| staging.refused(name, why))?;
-    file.flush().map_err(|why| staging.refused(name, why))
+    let mut bytes = Vec::new();
+    array.write_npy(&mut bytes).map_err(|why| staging.refused(name, why))?;
+    staging.write(name, &bytes)
 }

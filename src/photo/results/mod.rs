@@ -8,6 +8,7 @@ mod outlines;
 
 pub(crate) use draw::Scratch;
 pub(super) use draw::{DrawnPose, DrawnSheet, draw_sheets, thumbnail, write_normalized};
+pub(crate) use maps::write_npy;
 pub(super) use maps::{write_maps, write_pose, write_sums};
 pub use nails::NailRow;
 pub(super) use nails::{NAIL_COLUMNS, NailTable};

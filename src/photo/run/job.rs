@@ -30,7 +30,7 @@ use crate::photo::results::{self, DrawnPhotograph, DrawnPose, NailRow, NailTable
 use crate::photo::run::plan::{Foreknown, left_out};
 use crate::photo::run::report::{Findings, HTML, PhotosReport, PoseCount, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
-use crate::photo::sums::{Batch, Member, Members};
+use crate::photo::sums::{Batch, Member, Members, OF_A_PART};
 use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph, Profile};
 use crate::stages::Stages;
 
@@ -124,7 +124,7 @@ pub fn run(
     let nails = NailTable::of(&findings.rows, thumbnails, set);
     let report = staging.sync_meanwhile(|| {
         let sheets = match outputs.results {
-            Results::Sums { .. } => members.write(&staging).map(|()| None)?,
+            Results::Sums { .. } => members.write(&staging, OF_A_PART).map(|()| None)?,
             Results::Maps => {
                 let of_nails = || {
                     let mut sheets = results::draw_outlines(&drawn, &staging)?;

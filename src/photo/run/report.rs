@@ -65,7 +65,9 @@ pub struct PoseCount {
 /// How many subjects each pose's maps hold.
 pub(in crate::photo) fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
     let count = |(pose, sums): (&String, &Sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() };
-    partials.in_order().into_iter().map(count).collect()
+    let mut counts: Vec<PoseCount> = partials.poses.iter().map(count).collect();
+    sort_by_pose(&mut counts, |counted| &counted.pose);
+    counts
 }
 
 /// The poses whose maps have no standard deviation, as one note.

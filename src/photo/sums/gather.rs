@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::accuracy::Accuracy;
 use super::maps::Sums;
-use super::members::{Member, Members};
+use super::members::{Member, Members, OF_A_PART, OF_MAPS};
 use super::partial::{self, Held, PartialFault, Partials};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -72,7 +72,7 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
     let staging = Staging::new(out)?;
     let stages = Stages::default();
     let (members, files) = stages.time("list sums", || list(parts))?;
-    let before = before.and_then(|folder| Some((folder, Members::of_maps(folder)?)));
+    let before = before.and_then(|folder| Some((folder, Members::read(&folder.join(OF_MAPS)).ok()?)));
     let before = before.filter(|(_, earlier)| earlier.normalization == members.normalization);
     let add_up = |(pose, files): (&String, &Files)| {
         let earlier = before.as_ref().and_then(|(folder, earlier)| Some((*folder, earlier.poses.get(pose)?)));
@@ -97,7 +97,7 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
     let poses = summed.into_iter().map(|(pose, sums, _)| (pose, sums)).collect();
     let partials = Partials { normalization: members.normalization, poses };
     write_maps(&partials, figures, &staging, &stages)?;
-    members.write_of_maps(&staging)?;
+    members.write(&staging, OF_MAPS)?;
     let nails = NailTable::of_parts(parts)?;
     stages.time("table of nails", || nails.write(&staging))?;
     let accuracy = stages.time("accuracy", || Accuracy::of(&partials, truth))?;
@@ -122,8 +122,8 @@ fn list(parts: &[PathBuf]) -> Result<(Members, BTreeMap<String, Files>), MergeEr
     let mut files: BTreeMap<String, Files> = BTreeMap::new();
     let mut subjects: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for part in parts {
-        let own = Members::read(part)
-            .map_err(|why| PartialFault::Unreadable { file: part.join("partials/members.json"), why })?;
+        let list = part.join(OF_A_PART);
+        let own = Members::read(&list).map_err(|why| PartialFault::Unreadable { file: list, why })?;
         let all = all.get_or_insert_with(|| Members::new(own.normalization));
         for (pose, members) in own.poses {
             for member in members {

@@ -15,8 +15,8 @@ use crate::files::{Staging, WriteError};
 use crate::input;
 use crate::photo::normalize::Normalization;
 
-/// Where the list is among a part's results.
-const OF_A_PART: &str = "partials/members.json";
+/// Where the list is among the results of a part of a pipeline.
+pub(in crate::photo) const OF_A_PART: &str = "partials/members.json";
 /// Where it is among maps.
 pub(super) const OF_MAPS: &str = "members.json";
 
@@ -62,35 +62,17 @@ impl Members {
         })
     }
 
-    /// The list of a part of a pipeline.
+    /// Reads a list.
     ///
     /// # Errors
     /// Where there is none that can be read: in words.
-    pub(in crate::photo) fn read(part: &Path) -> Result<Self, String> {
-        Self::read_file(&part.join(OF_A_PART))
-    }
-
-    /// The list of maps that stand; none where there is none that can be read.
-    pub(in crate::photo) fn of_maps(maps: &Path) -> Option<Self> {
-        Self::read_file(&maps.join(OF_MAPS)).ok()
-    }
-
-    fn read_file(file: &Path) -> Result<Self, String> {
+    pub(super) fn read(file: &Path) -> Result<Self, String> {
         let text = input::read(file).map_err(|why| why.to_string())?;
         serde_json::from_slice(&text).map_err(|why| why.to_string())
     }
 
-    /// Writes the list of a part.
-    pub(in crate::photo) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
-        self.write_to(staging, OF_A_PART)
-    }
-
-    /// Writes the list of maps.
-    pub(in crate::photo) fn write_of_maps(&self, staging: &Staging) -> Result<(), WriteError> {
-        self.write_to(staging, OF_MAPS)
-    }
-
-    fn write_to(&self, staging: &Staging, name: &str) -> Result<(), WriteError> {
+    /// Writes the list, [`OF_A_PART`] or [`OF_MAPS`].
+    pub(in crate::photo) fn write(&self, staging: &Staging, name: &str) -> Result<(), WriteError> {
         let text = serde_json::to_string_pretty(self).map_err(|why| staging.refused(name, why))?;
         staging.write(name, (text + "\n").as_bytes())
     }

@@ -17,11 +17,10 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::maps::Sums;
-use super::members::Members;
+use super::members::{Members, OF_A_PART};
 use super::npz::Npz;
 use crate::input;
 use crate::photo::normalize::{Normalization, Normalized};
-use crate::photo::pose::sort_by_pose;
 
 /// Of sums.
 const FORMAT: u32 = 1;
@@ -117,39 +116,11 @@ pub struct Partials {
     pub poses: BTreeMap<String, Sums>,
 }
 
-impl Partials {
-    /// Poses and their sums, in the order in which poses are listed.
-    pub(in crate::photo) fn in_order(&self) -> Vec<(&String, &Sums)> {
-        let mut poses: Vec<(&String, &Sums)> = self.poses.iter().collect();
-        sort_by_pose(&mut poses, |(pose, _)| pose);
-        poses
-    }
-}
-
-/// Writes one pose's sums.
+/// A file of one pose's sums.
 ///
 /// # Errors
-/// Where the file can't be written.
-pub(in crate::photo) fn write(path: &Path, pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<()> {
-    Ok(std::fs::write(path, bytes(pose, sums, with)?)?)
-}
-
-/// Writes one pose's sums; one subject's as its levels. Returns what the file holds.
-///
-/// # Errors
-/// Where the file can't be written.
-pub(in crate::photo) fn write_part(
-    path: &Path,
-    pose: &str,
-    sums: &Sums,
-    with: &Normalization,
-) -> anyhow::Result<Vec<u8>> {
-    let file = if sums.subjects.len() == 1 { bytes_of_one(pose, sums, with)? } else { bytes(pose, sums, with)? };
-    std::fs::write(path, &file)?;
-    Ok(file)
-}
-
-fn bytes(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
+/// Where the archive can't be made.
+pub(in crate::photo) fn bytes(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
     let shape = (sums.size, sums.size);
     let mut npz = archive(20 * sums.sum.len());
     npz.add_array("sum", &ArrayView2::from_shape(shape, &sums.sum)?)?;
@@ -157,6 +128,14 @@ fn bytes(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8
     npz.add_array("count", &ArrayView2::from_shape(shape, &sums.count)?)?;
     npz.add_array("meta", &meta(FORMAT, pose, sums, with)?)?;
     Ok(npz.finish()?.into_inner())
+}
+
+/// The same; one subject's as its levels.
+///
+/// # Errors
+/// As [`bytes`].
+pub(in crate::photo) fn bytes_of_part(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
+    if sums.subjects.len() == 1 { bytes_of_one(pose, sums, with) } else { bytes(pose, sums, with) }
 }
 
 fn bytes_of_one(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
@@ -235,7 +214,7 @@ pub(super) fn add(whole: &mut Sums, file: &Path, meta: Meta, held: Held) -> Resu
 fn partial_files(part: &Path) -> Result<Vec<PathBuf>, PartialFault> {
     let nothing = || PartialFault::Nothing(part.to_owned());
     let Ok(text) = input::read(&part.join("run.json")) else {
-        let members = Members::read(part).map_err(|_| nothing())?;
+        let members = Members::read(&part.join(OF_A_PART)).map_err(|_| nothing())?;
         return Ok(members.poses.keys().map(|pose| part.join(part_name(pose))).collect());
     };
     let run: serde_json::Value = serde_json::from_slice(&text).map_err(|_| nothing())?;
