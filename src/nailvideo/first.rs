@@ -13,7 +13,7 @@ use crate::labelme::LabelMe;
 use crate::nail::Outline;
 use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file, unlike};
 use crate::photo::{Hues, Mistaken, NailFrame, Photograph};
-use crate::photograph::{PICTURES, is_picture};
+use crate::photograph::PICTURES;
 use crate::video::{Frame, Info};
 
 /// A nail narrower than this is refused: a photodiode's disc has under 5 pixels (assumed; nails of 40 px are followed
@@ -85,11 +85,7 @@ pub(in crate::nailvideo) struct Finder {
 
 impl Finder {
     pub(in crate::nailvideo) fn new(outline: Option<&Path>, options: &NailVideoOptions) -> Self {
-        let place = match outline {
-            Some(file) if is_picture(file) => OutlinePlace::Mask(file.to_owned()),
-            Some(file) => OutlinePlace::LabelMe(file.to_owned()),
-            None => OutlinePlace::Detection,
-        };
+        let place = outline.map_or(OutlinePlace::Detection, |file| OutlinePlace::of_file(file.to_owned()));
         let drawn_on = match &place {
             // What is wrong with a file that can't be read is said where its nail is looked for.
             OutlinePlace::LabelMe(file) => {

@@ -9,7 +9,6 @@ use super::set::SetFault;
 use super::sums::PartialFault;
 use crate::files::WriteError;
 use crate::job::Interrupted;
-use crate::words::shown;
 
 /// Why a set gave no results.
 #[derive(Debug, Error)]
@@ -37,7 +36,7 @@ fn look_at(report: &Option<PathBuf>) -> String {
 }
 
 fn list(failed: &[SetFault]) -> String {
-    failed.iter().map(|fault| format!("\n  {}: {}", shown(&fault.place), fault.what)).collect()
+    failed.iter().map(|fault| format!("\n  {fault}")).collect()
 }
 
 /// Why results were not joined; nothing is written then.

@@ -106,7 +106,7 @@ pub enum SetError {
 /// assert!(out.path().join("maps/extension-mean.npy").exists());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PhotoSet {
     /// The set's folder.
     pub folder: PathBuf,
@@ -121,18 +121,13 @@ pub struct PhotoSet {
 }
 
 impl PhotoSet {
-    fn empty(folder: &Path) -> Self {
-        let (photos, faults, unlisted, deeper) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { folder: folder.to_owned(), photos, faults, unlisted, deeper }
-    }
-
     /// Lists `folder`; folders of `apart` (results, masks) inside of it are no poses.
     ///
     /// # Errors
     /// [`SetError`] where there is no list: folder or manifest unreadable, or nothing in it.
     pub fn open(folder: &Path, apart: &[&Path]) -> Result<Self, SetError> {
         let manifest = folder.join("photos.csv");
-        let mut set = Self::empty(folder);
+        let mut set = Self { folder: folder.to_owned(), ..Self::default() };
         if manifest.is_file() {
             set.read_manifest(&manifest)?
         } else {
@@ -140,7 +135,7 @@ impl PhotoSet {
         }
         set.settle();
         if set.photos.is_empty() {
-            let also = set.faults.iter().map(|f| format!("\n  {}: {}", shown(&f.place), f.what)).collect();
+            let also = set.faults.iter().map(|fault| format!("\n  {fault}")).collect();
             let place = if manifest.is_file() {
                 "those that photos.csv names"
             } else {
@@ -166,9 +161,9 @@ impl PhotoSet {
     /// A set of photographs that are known one by one; those that can't be used are among its faults.
     #[must_use]
     pub fn of(photos: Vec<Photo>) -> Self {
-        let mut set = Self::empty(Path::new(""));
+        let mut set = Self::default();
         for photo in photos {
-            match name_fault("subject", &photo.subject).or_else(|| name_fault("pose", &photo.pose)) {
+            match names_fault(&photo.subject, &photo.pose) {
                 Some(what) => set.fault(photo.file, what),
                 None if !is_picture(&photo.path) => set.fault(photo.file, NO_PICTURE),
                 None => set.photos.push(photo),
@@ -238,7 +233,7 @@ impl PhotoSet {
     fn consider(&mut self, path: &Path, pose: &str, file: String) {
         if is_picture(path) {
             let subject = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-            if let Some(what) = name_fault("subject", &subject).or_else(|| name_fault("pose", pose)) {
+            if let Some(what) = names_fault(&subject, pose) {
                 self.fault(file, what);
                 return;
             }
@@ -395,10 +390,8 @@ fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<Str
     if let Some((name, _)) = cells.iter().find(|(_, value)| value.is_empty()) {
         return Some(format!("the cell `{name}` is empty"));
     }
-    if let Some(what) = name_fault("subject", subject).or_else(|| name_fault("pose", pose)) {
-        return Some(what);
-    }
-    (!folder.join(file).is_file()).then(|| format!("{file} does not exist beside photos.csv"))
+    let missing = || (!folder.join(file).is_file()).then(|| format!("{file} does not exist beside photos.csv"));
+    names_fault(subject, pose).or_else(missing)
 }
 
 const NO_PICTURE: &str = "is not a photograph that lunula reads; export it as PNG, TIFF, BMP or JPEG";
@@ -406,7 +399,11 @@ const NO_PICTURE: &str = "is not a photograph that lunula reads; export it as PN
 /// Bytes of a subject or pose: file systems take names of 255, and results add to it.
 const LONGEST_NAME: usize = 200;
 
-/// What is wrong with a name that files of the results will have.
+/// What is wrong with the names that files of the results will have.
+fn names_fault(subject: &str, pose: &str) -> Option<String> {
+    name_fault("subject", subject).or_else(|| name_fault("pose", pose))
+}
+
 fn name_fault(name: &str, value: &str) -> Option<String> {
     let mut parts = Path::new(value).components();
     let plain = matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None));

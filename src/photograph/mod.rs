@@ -6,12 +6,13 @@
 
 mod profile;
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
 use image::metadata::Orientation;
-use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
+use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel, RgbImage};
 use thiserror::Error;
 
 use crate::input::in_words;
@@ -285,6 +286,14 @@ impl Photograph {
     }
 }
 
+/// Red, green and blue of 8 bits; without a copy where they are so already.
+pub(crate) fn as_rgb8(image: &DynamicImage) -> Cow<'_, RgbImage> {
+    match image {
+        DynamicImage::ImageRgb8(rgb) => Cow::Borrowed(rgb),
+        other => Cow::Owned(other.to_rgb8()),
+    }
+}
+
 /// As [`Photograph::is_grey`].
 pub(crate) fn is_grey(image: &DynamicImage) -> bool {
     match image {
@@ -303,10 +312,7 @@ pub(crate) fn is_grey(image: &DynamicImage) -> bool {
 pub(crate) fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
     let file = std::io::BufReader::new(opened(path)?);
     let reader = ImageReader::new(file).with_guessed_format()?;
-    match reader.format() {
-        Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Bmp) => {}
-        _ => return Err(ReadFault::NotAPicture),
-    }
+    known(reader.format())?;
     Ok(!reader.into_decoder()?.color_type().has_color())
 }
 
@@ -327,10 +333,7 @@ fn read_bytes(path: &Path, megapixels: u32, bytes: &mut Vec<u8>) -> Result<(), R
     let length = file.metadata()?.len();
     bytes.clear();
     file.by_ref().take(FIRST_BYTES).read_to_end(bytes)?;
-    match image::guess_format(bytes) {
-        Ok(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Bmp) => {}
-        _ => return Err(ReadFault::NotAPicture),
-    }
+    known(image::guess_format(bytes).ok())?;
     if length <= most {
         bytes.reserve_exact(length as usize);
         file.take(most - bytes.len() as u64 + 1).read_to_end(bytes)?;
@@ -340,12 +343,14 @@ fn read_bytes(path: &Path, megapixels: u32, bytes: &mut Vec<u8>) -> Result<(), R
 
 fn decoder_for(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, ImageFormat), ReadFault> {
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-    match reader.format() {
-        Some(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Bmp)) => {
-            Ok((reader.into_decoder()?, format))
-        }
-        _ => Err(ReadFault::NotAPicture),
-    }
+    let format = known(reader.format())?;
+    Ok((reader.into_decoder()?, format))
+}
+
+/// A format that is read.
+fn known(format: Option<ImageFormat>) -> Result<ImageFormat, ReadFault> {
+    use ImageFormat::{Bmp, Jpeg, Png, Tiff};
+    format.filter(|format| matches!(format, Png | Jpeg | Tiff | Bmp)).ok_or(ReadFault::NotAPicture)
 }
 
 /// Decodes samples of 8 bits in `memory`; what no decoder writes is 0, whatever was there before.

@@ -302,6 +302,17 @@ impl TableWriter {
     }
 }
 
+/// A small CSV table as bytes; what is wrong with it, in words.
+pub(crate) fn csv_bytes<Row: IntoIterator<Item: AsRef<[u8]>>>(
+    header: impl IntoIterator<Item: AsRef<[u8]>>,
+    rows: impl IntoIterator<Item = Row>,
+) -> Result<Vec<u8>, String> {
+    let mut table = ::csv::Writer::from_writer(Vec::new());
+    table.write_record(header).map_err(|why| why.to_string())?;
+    rows.into_iter().try_for_each(|row| table.write_record(row)).map_err(|why| why.to_string())?;
+    table.into_inner().map_err(|why| why.to_string())
+}
+
 /// The text of a number in a column of fixed or free decimals; none where it is missing.
 pub(crate) fn number_text(number: f64, decimals: Option<usize>) -> Option<String> {
     if !number.is_finite() {

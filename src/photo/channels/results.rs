@@ -4,6 +4,7 @@ use super::compare::{ChannelFigures, ChannelRow, ZonesOf};
 use crate::figure::{Bar, Chart, Item, draw_charts};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Channel;
+use crate::table::csv_bytes;
 
 const TABLE: &str = "channels.csv";
 const PNG: &str = "figures/channels.png";
@@ -33,13 +34,8 @@ const MOST_CHARTS: usize = 8;
 /// # Errors
 /// [`WriteError`].
 pub(in crate::photo) fn write(figures: &mut ChannelFigures, staging: &Staging) -> Result<(), WriteError> {
-    let refused = |why: csv::Error| staging.refused(TABLE, why);
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(COLUMNS).map_err(refused)?;
-    for row in &figures.rows {
-        table.write_record(cells(row)).map_err(refused)?;
-    }
-    staging.write(TABLE, &table.into_inner().map_err(|why| staging.refused(TABLE, why))?)?;
+    let table = csv_bytes(COLUMNS, figures.rows.iter().map(cells)).map_err(|why| staging.refused(TABLE, why))?;
+    staging.write(TABLE, &table)?;
     let poses = figures.rows.iter().filter(|row| row.tone.is_none()).count() / 3;
     let (png, svg) = (staging.place(PNG)?, staging.place(SVG)?);
     draw_charts(&charts(figures), width(poses), &png, &svg).map_err(|why| staging.refused(PNG, why))?;

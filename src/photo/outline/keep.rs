@@ -14,6 +14,7 @@ use crate::files::{Places, WriteError};
 use crate::labelme::LabelMe;
 use crate::photo::set::{Photo, PhotoSet};
 use crate::photograph::Photograph;
+use crate::table::csv_bytes;
 
 /// The detected outlines of a photograph.
 #[derive(Debug, Clone)]
@@ -132,11 +133,9 @@ fn write_manifest(
     let path = folder.join("photos.csv");
     let refused = |why: String| WriteError::File { path: path.clone(), why };
     let at = places.place(&path)?;
-    let mut table = csv::Writer::from_writer(Vec::new());
     let with_tone = set.photos.iter().any(|photo| photo.tone.is_some());
     let header = ["file", "subject", "pose", "outline"].into_iter().chain(with_tone.then_some("tone"));
-    table.write_record(header).map_err(|e| refused(e.to_string()))?;
-    for photo in &set.photos {
+    let row = |photo: &Photo| {
         let outline =
             [Some(place(photo, Some(folder))), photo.outline.clone(), Some(photo.path.with_extension("json"))]
                 .into_iter()
@@ -144,12 +143,11 @@ fn write_manifest(
                 .find(|path| path.is_file() || new.contains(path));
         let outline = outline.map_or_else(String::new, |path| relative(&path, Some(folder)));
         let file = relative(&photo.path, Some(folder));
-        let tone = with_tone.then(|| photo.tone.as_deref().unwrap_or_default());
-        let cells = [&*file, &*photo.subject, &*photo.pose, &*outline].into_iter().chain(tone);
-        table.write_record(cells).map_err(|e| refused(e.to_string()))?;
-    }
-    let text = table.into_inner().map_err(|e| refused(e.to_string()))?;
-    std::fs::write(at, text).map_err(|e| refused(e.to_string()))
+        let tone = with_tone.then(|| photo.tone.clone().unwrap_or_default());
+        [file, photo.subject.clone(), photo.pose.clone(), outline].into_iter().chain(tone)
+    };
+    let text = csv_bytes(header, set.photos.iter().map(row)).map_err(refused)?;
+    std::fs::write(at, text).map_err(|why| refused(why.to_string()))
 }
 
 /// `path` as seen from `folder`, both made absolute first; as it is where that can't be known.

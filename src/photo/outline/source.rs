@@ -162,7 +162,7 @@ pub enum SourceFault {
 }
 
 /// Where a photograph's outlines will come from, known without opening it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum OutlinePlace {
     /// A LabelMe file.
     LabelMe(PathBuf),
@@ -171,7 +171,15 @@ pub enum OutlinePlace {
     /// Nothing drawn: detection.
     Detection,
     /// Nothing drawn, and detection is not wanted.
+    #[default]
     Nowhere,
+}
+
+impl OutlinePlace {
+    /// A file of outlines: a picture is a mask.
+    pub(crate) fn of_file(file: PathBuf) -> Self {
+        if is_picture(&file) { Self::Mask(file) } else { Self::LabelMe(file) }
+    }
 }
 
 impl OutlineOptions {
@@ -181,11 +189,7 @@ impl OutlineOptions {
             return OutlinePlace::Detection;
         }
         if let Some(outline) = &photo.outline {
-            return if is_picture(outline) {
-                OutlinePlace::Mask(outline.clone())
-            } else {
-                OutlinePlace::LabelMe(outline.clone())
-            };
+            return OutlinePlace::of_file(outline.clone());
         }
         let beside = photo.path.with_extension("json");
         if beside.is_file() && !self.listed_only {

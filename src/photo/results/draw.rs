@@ -60,6 +60,15 @@ pub(in crate::photo) struct DrawnSheet {
     pub(in crate::photo) png: Vec<u8>,
 }
 
+impl DrawnSheet {
+    /// Draws a sheet and writes it as the result `name`.
+    pub(super) fn new(sheet: &Sheet, name: &str, staging: &Staging) -> Result<Self, WriteError> {
+        let png = sheet.png().map_err(|why| staging.refused(name, why))?;
+        staging.write(name, &png)?;
+        Ok(Self { title: sheet.title.clone(), png })
+    }
+}
+
 /// Memory for the pictures of a thread, kept from one photograph to the next.
 #[derive(Default)]
 pub(crate) struct Scratch {
@@ -177,10 +186,9 @@ pub(in crate::photo) fn draw_sheets(
         let scale = Some(Scale { stretch: kind.stretch, label: kind.label.to_owned() });
         let sheet = Sheet { title: kind.title.to_owned(), tiles, columns: 4, scale };
         let (png_name, svg_name) = (format!("figures/{}.png", kind.name), format!("figures/{}.svg", kind.name));
-        let png = sheet.png().map_err(|why| staging.refused(&png_name, why))?;
-        staging.write(&png_name, &png)?;
+        let drawn = DrawnSheet::new(&sheet, &png_name, staging)?;
         staging.write(&svg_name, sheet.svg().map_err(|why| staging.refused(&svg_name, why))?.as_bytes())?;
-        Ok(DrawnSheet { title: sheet.title, png })
+        Ok(drawn)
     };
     KINDS.par_iter().zip(tiles).map(draw).collect()
 }

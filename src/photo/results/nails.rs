@@ -17,6 +17,7 @@ use crate::photo::normalize::{NailFrame, Survey};
 use crate::photo::outline::{Axis, Nail, Source};
 use crate::photo::pose::rank;
 use crate::photo::set::PhotoSet;
+use crate::table::csv_bytes;
 
 /// One nail of the result: a row of `nails.csv`.
 #[derive(Debug, Clone)]
@@ -200,13 +201,7 @@ impl NailTable {
     /// # Errors
     /// [`WriteError`].
     pub(in crate::photo) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        let refused = |why: String| staging.refused(NAME, why);
-        table.write_record(NAIL_COLUMNS).map_err(|e| refused(e.to_string()))?;
-        for row in &self.rows {
-            table.write_record(row).map_err(|e| refused(e.to_string()))?;
-        }
-        staging.write(NAME, &table.into_inner().map_err(|e| refused(e.to_string()))?)
+        staging.write(NAME, &csv_bytes(NAIL_COLUMNS, &self.rows).map_err(|why| staging.refused(NAME, why))?)
     }
 
     /// Draws the sheets of all nails and writes them.
@@ -215,10 +210,7 @@ impl NailTable {
     /// [`WriteError`].
     pub(in crate::photo) fn draw_sheets(&self, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
         let draw = |NailSheet { pose, number, sheet }: &NailSheet| {
-            let name = format!("figures/{pose}-nails-{number}.png");
-            let png = sheet.png().map_err(|why| staging.refused(&name, why))?;
-            staging.write(&name, &png)?;
-            Ok(DrawnSheet { title: sheet.title.clone(), png })
+            DrawnSheet::new(sheet, &format!("figures/{pose}-nails-{number}.png"), staging)
         };
         self.sheets.par_iter().map(draw).collect()
     }

@@ -1,7 +1,7 @@
 //! What was found, drawn over the photographs: used, doubtful and refused in three colours, for a person to see in one
 //! look what happened.
 
-use image::{DynamicImage, RgbImage};
+use image::RgbImage;
 use rayon::prelude::*;
 
 use super::draw::DrawnSheet;
@@ -9,7 +9,7 @@ use crate::figure::{Sheet, Tile, TilePicture, text_coverage};
 use crate::files::{Staging, WriteError};
 use crate::nail::{Axis, Outline};
 use crate::photo::outline::{Nail, Refusal, Refused, hundredths};
-use crate::photograph::Photograph;
+use crate::photograph::{Photograph, as_rgb8};
 use crate::vision::{VisionError, closed_line, resized};
 
 /// Photographs of a set that are drawn, the first ones: memory doesn't grow with the set.
@@ -102,14 +102,7 @@ pub(in crate::photo) fn drawn_outlines(
     nails: &[Nail],
     refused: &[Refused],
 ) -> Result<DrawnPhotograph, VisionError> {
-    let converted: RgbImage;
-    let rgb = match &picture.image {
-        DynamicImage::ImageRgb8(rgb) => rgb,
-        other => {
-            converted = other.to_rgb8();
-            &converted
-        }
-    };
+    let rgb = &*as_rgb8(&picture.image);
     let from = [rgb.width() as usize, rgb.height() as usize];
     let scale = (LONGEST_PX as f64 / from[0].max(from[1]) as f64).min(1.0);
     let size = from.map(|n| ((n as f64 * scale).round() as usize).max(1));
@@ -222,9 +215,7 @@ pub(in crate::photo) fn draw_outlines(
         let tiles = std::iter::once(tile("", legend)).chain(others).collect();
         let title = format!("Outlines found, sheet {}", at + 1);
         let sheet = Sheet { title, tiles, columns: PER_ROW, scale: None };
-        let png = sheet.png().map_err(|why| staging.refused(&name, why))?;
-        staging.write(&name, &png)?;
-        Ok(DrawnSheet { title: sheet.title, png })
+        DrawnSheet::new(&sheet, &name, staging)
     };
     photographs.par_chunks(PER_SHEET).enumerate().map(draw).collect()
 }

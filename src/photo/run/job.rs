@@ -188,6 +188,7 @@ fn save_outlines(
 }
 
 /// What a photograph gave.
+#[derive(Default)]
 struct Done {
     nails: Vec<(NailRow, Option<GrayAlphaImage>)>,
     detected: Option<DetectedOutline>,
@@ -276,20 +277,7 @@ impl Work<'_> {
 
     /// Read, outline, normalize, add up: once down, never back.
     fn photograph_in(&self, index: usize, photo: &Photo, memory: &mut Memory) -> Result<Done, WriteError> {
-        let mut done = Done {
-            nails: Vec::new(),
-            detected: None,
-            drawn: None,
-            outlines: self.options.outlines.locate(photo),
-            grey: None,
-            largest: None,
-            profile: None,
-            cells: None,
-            fault: None,
-            detail: None,
-            drawn_on: None,
-            pose: None,
-        };
+        let mut done = Done { outlines: self.options.outlines.locate(photo), ..Done::default() };
         let fault = |what: String| Some(SetFault { place: photo.file.clone(), what });
         let megapixels = self.options.max_megapixels.unwrap_or(MOST_MEGAPIXELS);
         let buffer = &mut memory.photograph;

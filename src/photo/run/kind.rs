@@ -18,7 +18,6 @@ use crate::photo::run::job::run;
 use crate::photo::run::plan::{Foreknown, plan_foreknown};
 use crate::photo::set::{Photo, PhotoSet};
 use crate::photo::sums::{Accuracy, Gathering, gather};
-use crate::photograph::is_picture;
 use crate::stages::Step;
 
 const OUTLINES: &str = "outlines";
@@ -87,8 +86,7 @@ impl Job for PhotosOptions {
             let outlines = match (self.outlines.sources, drawn) {
                 (Sources::Detect, _) | (Sources::Auto, None) => OutlinePlace::Detection,
                 (Sources::Annotated, None) => OutlinePlace::Nowhere,
-                (_, Some(file)) if is_picture(&file) => OutlinePlace::Mask(file),
-                (_, Some(file)) => OutlinePlace::LabelMe(file),
+                (_, Some(file)) => OutlinePlace::of_file(file),
             };
             Foreknown { pose, grey: input.facts.grey, outlines }
         });

@@ -15,13 +15,13 @@
 mod component;
 mod unlike;
 
-use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use image::{DynamicImage, RgbImage};
 
 use super::candidate::shared;
 use crate::photo::outline::{Outline, Refusal, Refused};
+use crate::photograph::as_rgb8;
 use crate::vision::{Network, VisionError, part_resized, resized};
 use component::{Component, View};
 
@@ -131,7 +131,7 @@ impl NailNet {
     /// # Errors
     /// [`VisionError`].
     pub fn segments(&self, image: &DynamicImage) -> Result<(Vec<Segment>, Vec<Refused>), VisionError> {
-        let rgb = &*colours(image);
+        let rgb = &*as_rgb8(image);
         let (mut found, mut refused) = (Vec::new(), Vec::new());
         for first in self.candidates(rgb)? {
             match self.look_again(rgb, &first)? {
@@ -232,14 +232,6 @@ impl NailNet {
 /// The component that overlaps an outline most, and its IoU.
 fn overlapping(outline: &Outline, seen: Vec<Component>) -> Option<(f64, Component)> {
     seen.into_iter().map(|one| (outline.iou(&one.outline), one)).max_by(|a, b| a.0.total_cmp(&b.0))
-}
-
-/// A photograph as the network takes it.
-fn colours(image: &DynamicImage) -> Cow<'_, RgbImage> {
-    match image {
-        DynamicImage::ImageRgb8(rgb) => Cow::Borrowed(rgb),
-        other => Cow::Owned(other.to_rgb8()),
-    }
 }
 
 fn probability(log_odds: f64) -> f64 {

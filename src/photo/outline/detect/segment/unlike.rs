@@ -7,8 +7,9 @@
 use image::DynamicImage;
 
 use super::component::log_odds;
-use super::{NailNet, colours, overlapping};
+use super::{NailNet, overlapping};
 use crate::photo::outline::{Moments, Outline};
+use crate::photograph::as_rgb8;
 use crate::vision::VisionError;
 
 /// What the network sees instead of the outline that is drawn.
@@ -43,7 +44,7 @@ impl NailNet {
         image: &DynamicImage,
         outlines: &[Option<&Outline>],
     ) -> Result<Vec<Option<Unlike>>, VisionError> {
-        let rgb = &*colours(image);
+        let rgb = &*as_rgb8(image);
         let look = |outline: &Outline| {
             let moments = Moments::of(outline);
             Ok::<_, VisionError>(overlapping(outline, self.look_at(rgb, moments.centroid_px, moments.major_px)?))
