@@ -223,6 +223,17 @@ impl Axis {
         self.clockwise_from_up_rad.to_degrees()
     }
 
+    /// The angle between two, within 0..=180.
+    pub fn apart_deg(self, other: Self) -> f64 {
+        Self::from_clockwise_rad(self.clockwise_from_up_rad - other.clockwise_from_up_rad).clockwise_deg().abs()
+    }
+
+    /// Turned clockwise.
+    #[must_use]
+    pub fn turned(self, by_rad: f64) -> Self {
+        Self::from_clockwise_rad(self.clockwise_from_up_rad + by_rad)
+    }
+
     /// Unit vector towards the distal end, `[x, y]` with y down.
     pub fn distal(self) -> [f64; 2] {
         let (sin, cos) = self.clockwise_from_up_rad.sin_cos();

@@ -55,17 +55,12 @@ impl FirstNail {
 pub(in crate::nailvideo) const DRAWN_ON: &str = "lunulaFrame";
 
 /// Nails as a LabelMe file of a frame's picture beside it.
-pub(in crate::nailvideo) fn labelme(
-    nails: &[ToDraw],
-    picture: &str,
-    size: [u32; 2],
-    frame: u64,
-) -> serde_json::Result<String> {
-    let mut file = to_file(picture, size, nails);
+pub(in crate::nailvideo) fn labelme(nails: &[ToDraw], name: &str, picture: &Photograph, frame: u64) -> LabelMe {
+    let mut file = to_file(name, picture, nails);
     if frame > 0 {
         file.other.insert(DRAWN_ON.to_owned(), frame.into());
     }
-    serde_json::to_string_pretty(&file).map(|text| text + "\n")
+    file
 }
 
 /// Why a frame shows no nail to follow, in words for the user, and what was seen on it.

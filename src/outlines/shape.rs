@@ -150,17 +150,17 @@ impl NailShape {
             let [x, y] = [point[0] - centre[0], point[1] - centre[1]];
             *point = [centre[0] + x * cos - y * sin, centre[1] + x * sin + y * cos];
         }
-        self.axis = Axis::from_clockwise_rad(self.axis.clockwise_rad() + angle);
+        self.axis = self.axis.turned(angle);
     }
 
     /// The axis alone, clockwise, in steps.
     pub(super) fn turn_axis(&mut self, steps: f64) {
-        self.axis = Axis::from_clockwise_rad(self.axis.clockwise_rad() + AXIS_RAD * steps);
+        self.axis = self.axis.turned(AXIS_RAD * steps);
     }
 
     /// The distal end is the other one.
     pub(super) fn flip(&mut self) {
-        self.axis = Axis::from_clockwise_rad(self.axis.clockwise_rad() + std::f64::consts::PI);
+        self.axis = self.axis.turned(std::f64::consts::PI);
     }
 
     /// The place around the rim after `from`, or before it; the first is at the distal end.

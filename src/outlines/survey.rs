@@ -12,8 +12,8 @@ use super::shape::NailShape;
 use crate::labelme::LabelMe;
 use crate::nail::{Axis, Outline};
 use crate::photo::outline::{
-    DOUBTFUL, Labelled, Listed, Moments, NAIL, Nail, OutlinePlace, Source, SourceFault, Sources, ToDraw, hundredths,
-    labelled, mark_upright, relative, template, to_file, unlike,
+    DOUBTFUL, Labelled, Listed, Moments, NAIL, Nail, OutlinePlace, SourceFault, Sources, ToDraw, hundredths, labelled,
+    relative, template, to_draw, to_file, unlike,
 };
 use crate::photo::{NailFrame, Photo, PhotoSet, Photograph};
 use crate::stages::Step;
@@ -105,7 +105,7 @@ fn of_file(home: &Path, picture: &Photograph, options: &EditOptions) -> Result<(
     let stored =
         options.outlines.drawn.or_of(&file).is_stored(file.size(), picture, &name).map_err(|why| why.to_string())?;
     let found = labelled(&file, picture, stored, &[NAIL, DOUBTFUL]);
-    let mut nails: Vec<Nail> = found.iter().map(|one| nail_of(&one.nail)).collect();
+    let mut nails: Vec<Nail> = found.iter().map(|one| Nail::annotated(one.nail.clone(), "")).collect();
     options.outlines.complete_axes(picture, &mut nails);
     let is_doubtful = |one: &Labelled| file.shapes[one.polygon].label.trim().eq_ignore_ascii_case(DOUBTFUL);
     let drawn: Vec<Option<&Outline>> = nails.iter().map(|nail| nail.outline.as_ref()).collect();
@@ -131,14 +131,6 @@ fn of_file(home: &Path, picture: &Photograph, options: &EditOptions) -> Result<(
     Ok((Annotation::new(home, Some(&bytes), file, picture, stored), finds))
 }
 
-fn nail_of(annotated: &crate::photo::outline::Annotated) -> Nail {
-    let (outline, reason) = match &annotated.outline {
-        Ok(outline) => (Some(outline.clone()), String::new()),
-        Err(fault) => (None, fault.to_string()),
-    };
-    Nail { source: Source::Annotated, outline, axis: annotated.axis, confidence: Some(1.0), slants_deg: None, reason }
-}
-
 /// What is drawn, or, where that is no outline, a template over it.
 fn shape_of(one: &Labelled, axis: Option<Axis>, picture: &Photograph) -> NailShape {
     match &one.nail.outline {
@@ -162,7 +154,7 @@ fn shape_of(one: &Labelled, axis: Option<Axis>, picture: &Photograph) -> NailSha
 
 /// Of the two directions of a line, the one that points up the picture.
 fn upright(axis: Axis) -> Axis {
-    let turned = Axis::from_clockwise_rad(axis.clockwise_rad() + std::f64::consts::PI);
+    let turned = axis.turned(std::f64::consts::PI);
     if axis.clockwise_rad().abs() <= turned.clockwise_rad().abs() { axis } else { turned }
 }
 
@@ -178,14 +170,8 @@ fn of_search(
         Err(SourceFault::NotFound { .. } | SourceFault::NotAnnotated { .. }) => Vec::new(),
         Err(why) => return Err(why.to_string()),
     };
-    let drawn = nails.into_iter().filter_map(|Nail { outline, axis, confidence, reason, .. }| {
-        let confidence = confidence.unwrap_or(0.0);
-        Some(ToDraw { outline: outline?, axis: axis?, confidence, trusted: reason.is_empty() })
-    });
-    let drawn: Vec<ToDraw> = drawn.collect();
-    let size = [picture.image.width(), picture.image.height()];
-    let mut file = to_file(&relative(&photo.path, home.parent()), size, &drawn);
-    mark_upright(&mut file, picture);
+    let drawn = to_draw(&nails);
+    let file = to_file(&relative(&photo.path, home.parent()), picture, &drawn);
     // Each polygon is one of them, in their order.
     let finds = labelled(&file, picture, false, &[NAIL, DOUBTFUL]).into_iter().zip(drawn);
     let finds = finds.map(|(one, nail)| {

@@ -245,11 +245,10 @@ struct Suggestion {
 impl Job<'_> {
     /// Writes the first frame that is of use, and its outlines.
     fn suggest(&self, Suggestion { index, picture, seen }: &Suggestion) -> Result<(), NailVideoError> {
-        let size = [picture.image.width(), picture.image.height()];
         let shown = png(&picture.image).map_err(|why| self.staging.refused(PICTURE, why))?;
         self.staging.write(PICTURE, &shown)?;
-        let outlines = labelme(seen, PICTURE, size, *index).map_err(|why| self.staging.refused(OUTLINE, why))?;
-        Ok(self.staging.write(OUTLINE, outlines.as_bytes())?)
+        let outlines = labelme(seen, PICTURE, picture, *index).to_text();
+        Ok(self.staging.write(OUTLINE, &outlines.map_err(|why| self.staging.refused(OUTLINE, why))?)?)
     }
 
     /// Begins with the nail of the first good frame; `kept` are the frames before it.

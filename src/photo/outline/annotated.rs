@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use super::{Axis, Outline, OutlineFault};
 use crate::labelme::{LabelMe, Shape, from_labelme, to_labelme};
+use crate::photo::normalize::NailFrame;
 use crate::photograph::{Photograph, is_picture, upright_from_stored};
 
 /// What a nail's polygon is labelled.
@@ -140,13 +141,6 @@ pub enum ShapeFault {
 /// A key of files that are written here, where their size can't say that they were drawn on the upright picture.
 const DRAWN_ON: &str = "lunulaDrawnOn";
 const UPRIGHT: &str = "upright";
-
-/// Says in a file that it was drawn on the upright photograph, where nothing else in it does.
-pub(crate) fn mark_upright(file: &mut LabelMe, photo: &Photograph) {
-    if Drawn::Auto.is_stored(file.size(), photo, "").is_err() {
-        file.other.insert(DRAWN_ON.to_owned(), UPRIGHT.into());
-    }
-}
 
 impl Drawn {
     /// As a file that was written here says, unless a person says something else.
@@ -335,15 +329,15 @@ pub struct ToDraw {
 
 /// A LabelMe file of detected nails: polygons, each with its axis line through the box, tied by `group_id`.
 ///
-/// `image_path` is the photograph's, relative to the file that will be written; `size` is that of the upright one,
-/// pixels.
-pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
+/// `image_path` is the photograph's, relative to the file that will be written. The file says that it was drawn on the
+/// upright one, where its size does not.
+pub(crate) fn to_file(image_path: &str, photo: &Photograph, nails: &[ToDraw]) -> LabelMe {
     let mut shapes = Vec::new();
     for (group, nail) in (1..).zip(nails) {
         let points = nail.outline.points().iter().map(|p| to_labelme(p.map(|v| (v * 100.0).round() / 100.0))).collect();
         let mut polygon = Shape::new(if nail.trusted { NAIL } else { DOUBTFUL }, "polygon", points);
         polygon.description = Some(format!("detected by lunula, confidence {:.2}", nail.confidence));
-        let line = crate::photo::normalize::NailFrame::new(&nail.outline, nail.axis)
+        let line = NailFrame::new(&nail.outline, nail.axis)
             .map(|f| vec![to_labelme(f.photo_from_nail(0.0, -0.5)), to_labelme(f.photo_from_nail(0.0, 0.5))]);
         let axis = line.map(|points| Shape::new(AXIS, "line", points));
         for mut shape in std::iter::once(polygon).chain(axis) {
@@ -351,5 +345,9 @@ pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
             shapes.push(shape);
         }
     }
-    LabelMe::new(image_path, size[0], size[1], shapes)
+    let mut file = LabelMe::new(image_path, photo.image.width(), photo.image.height(), shapes);
+    if Drawn::Auto.is_stored(file.size(), photo, "").is_err() {
+        file.other.insert(DRAWN_ON.to_owned(), UPRIGHT.into());
+    }
+    file
 }

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::annotated::{ToDraw, mark_upright, to_file};
+use super::annotated::{ToDraw, to_file};
 use super::source::{Nail, Source};
 use crate::files::{Places, WriteError};
 use crate::labelme::LabelMe;
@@ -29,10 +29,7 @@ impl DetectedOutline {
     /// What was detected on a photograph; `None` where that is nothing.
     pub(in crate::photo) fn of(photo: usize, picture: &Photograph, nails: &[Nail]) -> Option<Self> {
         let found = to_draw(nails);
-        let size = [picture.image.width(), picture.image.height()];
-        let mut file = to_file("", size, &found);
-        mark_upright(&mut file, picture);
-        (!found.is_empty()).then_some(Self { photo, file })
+        (!found.is_empty()).then(|| Self { photo, file: to_file("", picture, &found) })
     }
 }
 

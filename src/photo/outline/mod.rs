@@ -12,9 +12,9 @@ mod source;
 pub use crate::nail::{Axis, Outline, OutlineFault};
 pub use annotated::{
     AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, DrawnNails, NAIL, NOT_A_NAIL, ShapeFault, ToDraw,
-    read as read_annotated, to_file,
+    read as read_annotated,
 };
-pub(crate) use annotated::{Labelled, labelled, mark_upright, other_photograph};
+pub(crate) use annotated::{Labelled, labelled, other_photograph, to_file};
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 #[doc(hidden)]
 pub use detect::training;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::annotated::{self, AnnotationFault, Drawn};
+use super::annotated::{self, Annotated, AnnotationFault, Drawn};
 use super::axis::{Verdict, agree, turned_since, verdict};
 use super::{
     Axis, DetectOptions, Detected, MaskFault, MaskValues, NothingFound, Outline, Refused, Side, detect, find_axes,
@@ -97,6 +97,24 @@ pub struct Nail {
     pub slants_deg: Option<f64>,
     /// Why it is left out; empty for one that is used.
     pub reason: String,
+}
+
+impl Nail {
+    fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Self {
+        Self { source, outline: Some(outline), axis, confidence: Some(1.0), slants_deg: None, reason: String::new() }
+    }
+
+    fn left_out(source: Source, reason: String) -> Self {
+        Self { source, outline: None, axis: None, confidence: None, slants_deg: None, reason }
+    }
+
+    /// As it was drawn in LabelMe; `file` begins what is said of its fault.
+    pub(crate) fn annotated(Annotated { outline, axis }: Annotated, file: &str) -> Self {
+        match outline {
+            Ok(outline) => Self::drawn(Source::Annotated, outline, axis),
+            Err(fault) => Self::left_out(Source::Annotated, format!("{file}{fault}")),
+        }
+    }
 }
 
 /// What a photograph gave.
@@ -215,18 +233,10 @@ impl OutlineOptions {
     }
 
     fn annotated_nails(&self, file: &Path, picture: &Photograph) -> Result<Listed, SourceFault> {
-        let mut nails = Vec::new();
         let annotation = annotated::read(file, picture, self.drawn)?;
-        for annotated in annotation.nails {
-            nails.push(match annotated.outline {
-                Ok(outline) => drawn(Source::Annotated, outline, annotated.axis),
-                // A row of the results does not depend on where the photographs are.
-                Err(fault) => {
-                    let name = file.file_name().unwrap_or_default().to_string_lossy();
-                    left_out(Source::Annotated, None, format!("{name}: {fault}"))
-                }
-            });
-        }
+        // A row of the results does not depend on where the photographs are.
+        let name = format!("{}: ", file.file_name().unwrap_or_default().to_string_lossy());
+        let mut nails: Vec<Nail> = annotation.nails.into_iter().map(|one| Nail::annotated(one, &name)).collect();
         self.complete_axes(picture, &mut nails);
         Ok(Listed { image_path: Some(annotation.image_path), ..nails.into() })
     }
@@ -249,7 +259,7 @@ impl OutlineOptions {
         .map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
         let too_large = regions.too_large(f64::from(mask.width()) * f64::from(mask.height()));
         let mut nails: Vec<Nail> =
-            regions.nails.into_iter().map(|outline| drawn(Source::Mask, outline, None)).collect();
+            regions.nails.into_iter().map(|outline| Nail::drawn(Source::Mask, outline, None)).collect();
         self.complete_axes(picture, &mut nails);
         for (nail, why) in nails.iter_mut().zip(too_large) {
             if let Some(why) = why {
@@ -260,7 +270,7 @@ impl OutlineOptions {
         if nails.is_empty() && regions.dropped.is_empty() {
             return Err(SourceFault::EmptyMask(file.to_owned()));
         }
-        nails.extend(regions.dropped.into_iter().map(|d| left_out(Source::Mask, None, d.to_string())));
+        nails.extend(regions.dropped.into_iter().map(|d| Nail::left_out(Source::Mask, d.to_string())));
         Ok(nails)
     }
 
@@ -384,14 +394,6 @@ impl OutlineOptions {
 /// A confidence in words, cut off rather than rounded: 0.499 is less than 0.5.
 pub(crate) fn hundredths(confidence: f64) -> String {
     format!("{:.2}", (100.0 * confidence).floor() / 100.0)
-}
-
-fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Nail {
-    Nail { source, outline: Some(outline), axis, confidence: Some(1.0), slants_deg: None, reason: String::new() }
-}
-
-fn left_out(source: Source, outline: Option<Outline>, reason: String) -> Nail {
-    Nail { source, outline, axis: None, confidence: None, slants_deg: None, reason }
 }
 
 fn mask_of(folder: &Path, photo: &Photo) -> Option<PathBuf> {

@@ -192,7 +192,7 @@ fn off_deg(truth: &Outline, axis: Axis, axes: &[[f64; 3]]) -> Option<f64> {
     let [x, y] = lunula::photo::outline::Moments::of(truth).centroid_px;
     let away = |row: &&[f64; 3]| (row[0] - x).hypot(row[1] - y);
     let row = axes.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
-    Some(Axis::from_clockwise_rad(axis.clockwise_rad() - row[2].to_radians()).clockwise_deg().abs())
+    Some(axis.apart_deg(Axis::from_clockwise_rad(row[2].to_radians())))
 }
 
 /// The photograph, true outlines white, confident finds green, doubtful ones yellow, with a line to the distal end.

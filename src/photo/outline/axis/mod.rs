@@ -311,18 +311,14 @@ fn surely_agrees(scores: &[Score; DIRECTIONS], axis: Axis) -> bool {
     let all = known.0.iter().sum::<f64>() + unknown;
     let mass = known.around(direction(known.best())).0;
     let least = mass / all;
-    let off_deg = angle_deg(found.axis, axis) + 2.0 * PEAK_DEG * unknown / mass;
+    let off_deg = found.axis.apart_deg(axis) + 2.0 * PEAK_DEG * unknown / mass;
     // Beyond what rounding could tip.
     least >= SURE + 1e-9 && off_deg <= SLANTS_DEG - 1e-9
 }
 
 /// Whether two axes that people gave are the same, as far as a picture could contradict them.
 pub(super) fn agree(one: Axis, other: Axis) -> bool {
-    angle_deg(one, other) <= CONTRADICTS_DEG
-}
-
-fn angle_deg(one: Axis, other: Axis) -> f64 {
-    turn(one.clockwise_rad() - other.clockwise_rad()).abs().to_degrees()
+    one.apart_deg(other) <= CONTRADICTS_DEG
 }
 
 /// How a picture may have been turned after it was annotated, in words; `None` where the annotation fits as well as it

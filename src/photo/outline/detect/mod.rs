@@ -35,6 +35,7 @@ use image::DynamicImage;
 use thiserror::Error;
 
 use super::{Axis, AxisUnknown, FoundAxis, Moments, Outline, Refusal, Refused, find_axes};
+use crate::photo::normalize::NailFrame;
 use crate::photograph::is_grey;
 use crate::vision::VisionError;
 use candidate::{Lead, Origin, follow_all, own_frame};
@@ -317,8 +318,8 @@ fn with_better_outline(
     let is_close_up = outline.area_px2().sqrt() >= CLOSE_UP * f64::from(image.width().max(image.height()));
     let mut tried = Vec::from_iter(guess);
     if is_close_up || known.is_none() {
-        let major = Moments::of(&outline).major.clockwise_rad();
-        tried.extend([0.0, 1.0, 2.0, 3.0].map(|k| Axis::from_clockwise_rad(major + k * std::f64::consts::FRAC_PI_2)));
+        let major = Moments::of(&outline).major;
+        tried.extend([0.0, 1.0, 2.0, 3.0].map(|k| major.turned(k * std::f64::consts::FRAC_PI_2)));
     }
     let likeliest = tried[0];
     let better: Vec<Detected> = tried
@@ -326,13 +327,10 @@ fn with_better_outline(
         .filter_map(|axis| refined(image, &outline, axis, options))
         .filter(|better| better.outline.iou(&outline) >= REFINED_AGREES[usize::from(is_close_up)])
         .collect();
-    let apart_deg = |one: Axis, other: Axis| {
-        Axis::from_clockwise_rad(one.clockwise_rad() - other.clockwise_rad()).clockwise_deg().abs()
-    };
     let best = better.iter().max_by(|a, b| a.confidence.total_cmp(&b.confidence));
     // Believed, and nothing says that the finger points elsewhere.
     let believed = best.filter(|best| {
-        let elsewhere = |axis: Axis| apart_deg(axis, best.axis) > ELSEWHERE_DEG;
+        let elsewhere = |axis: Axis| axis.apart_deg(best.axis) > ELSEWHERE_DEG;
         let rivals = better.iter().filter(|other| elsewhere(other.axis)).map(|other| other.confidence);
         let rival = rivals.fold(0.0, f64::max);
         match known {
@@ -345,11 +343,11 @@ fn with_better_outline(
         }
     });
     let confirmed = |better: &Detected| {
-        better.outline.iou(&outline) >= CONFIRMS && known.is_some_and(|axis| apart_deg(axis, better.axis) <= NEAR_DEG)
+        better.outline.iou(&outline) >= CONFIRMS && known.is_some_and(|axis| axis.apart_deg(better.axis) <= NEAR_DEG)
     };
     match believed {
         Some(best) => {
-            let axis = known.filter(|axis| apart_deg(*axis, best.axis) > AGREE_DEG).unwrap_or(best.axis);
+            let axis = known.filter(|axis| axis.apart_deg(best.axis) > AGREE_DEG).unwrap_or(best.axis);
             Detected { axis, confidence, outline: best.outline.clone() }
         }
         None if is_close_up && confidence >= SURE && better.iter().any(confirmed) => {
@@ -389,17 +387,8 @@ pub fn snap(image: &DynamicImage, rough: &Outline, axis: Axis) -> Option<Detecte
 
 /// The outline of a nail whose place, size and axis are about known, and what the judges of close-ups think of it.
 fn refined(image: &DynamicImage, rough: &Outline, axis: Axis, options: &DetectOptions) -> Option<Detected> {
-    let points = rough.points();
-    let ends = |way: [f64; 2]| {
-        let along = points.iter().map(|p| p[0] * way[0] + p[1] * way[1]);
-        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-    };
-    let (up, right) = (axis.distal(), axis.right());
-    let (along, across) = (ends(up), ends(right));
-    let (length, width) = (along[1] - along[0], across[1] - across[0]);
-    let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
-    let centre = [0, 1].map(|k| middle(along) * up[k] + middle(across) * right[k]);
-
+    let NailFrame { center_px: centre, length_px: length, width_px: width, .. } =
+        NailFrame::around(&rough.points(), axis);
     let reach = (0.5 + AROUND) * length.max(width);
     let size = [f64::from(image.width()), f64::from(image.height())];
     let low = [0, 1].map(|k| (centre[k] - reach).floor().clamp(0.0, size[k] - 1.0));
@@ -407,7 +396,7 @@ fn refined(image: &DynamicImage, rough: &Outline, axis: Axis, options: &DetectOp
     let part = [low, [high[0] - low[0], high[1] - low[1]]].map(|sides| sides.map(|n| n as u32));
     let levels = Levels::of_part(image, part, options.working_size_px.max(4 * LEAST_PX));
 
-    let nail = Frame { origin: [0, 1].map(|k| centre[k] - low[k]), up, unit_px: length };
+    let nail = Frame { origin: [0, 1].map(|k| centre[k] - low[k]), up: axis.distal(), unit_px: length };
     let template = OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: width / length, turn: 0.0, taper: TAPER };
     let found = follow_all(&levels, vec![lead_anywhere(&levels, nail, template)], 1).pop()?;
     let moved: Vec<[f64; 2]> = found.outline.points().iter().map(|p| [p[0] + low[0], p[1] + low[1]]).collect();
@@ -425,10 +414,10 @@ const CONTRADICT_DEG: f64 = 75.0;
 fn second_opinion(image: &DynamicImage, found: &mut [Detected], min_confidence: f64) {
     for one in found.iter_mut().filter(|d| d.confidence >= min_confidence) {
         let Ok(other) = find_axes(image, std::slice::from_ref(&one.outline)).swap_remove(0) else { continue };
-        let apart = Axis::from_clockwise_rad(other.axis.clockwise_rad() - one.axis.clockwise_rad());
-        if apart.clockwise_deg().abs() > CONTRADICT_DEG {
+        let apart_deg = other.axis.apart_deg(one.axis);
+        if apart_deg > CONTRADICT_DEG {
             one.confidence *= 0.5;
-        } else if apart.clockwise_deg().abs() > AGREE_DEG {
+        } else if apart_deg > AGREE_DEG {
             one.axis = other.axis;
         }
     }
