@@ -19,13 +19,8 @@ pub use chart::{Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, dra
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use sheet::{Scale, Sheet, Tile, TilePicture};
+pub use text::text_coverage;
 pub use thin::{Bin, MOST_BINS, Sample, Summary, Thinned};
-
-/// How much of each pixel a text covers (0 to 255), `height_px` high: to draw on pictures that are not RGB.
-#[must_use]
-pub fn text_coverage(text: &str, height_px: f32) -> image::GrayImage {
-    text::coverage(text, height_px)
-}
 
 /// A picture as a PNG file, encoded fast rather than small.
 ///

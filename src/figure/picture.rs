@@ -20,11 +20,14 @@ pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
+/// A backend of plotters whose errors can be passed on.
+pub(super) trait Backend: DrawingBackend<ErrorType: 'static> {}
+
+impl<B: DrawingBackend<ErrorType: 'static>> Backend for B {}
+
 /// What can be drawn with any backend.
 pub(super) trait Draw {
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static;
+    fn draw<B: Backend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>;
 }
 
 /// Draws on white, `size` pixels wide and high, to `png` and to `svg`.
@@ -43,12 +46,10 @@ pub(super) fn write_both(what: &impl Draw, size: (u32, u32), png: &Path, svg: &P
 }
 
 /// Draws the legend of all named series.
-pub(super) fn draw_legend<'a, B, C>(chart: &mut ChartContext<'a, B, C>, at: SeriesLabelPosition) -> anyhow::Result<()>
-where
-    B: DrawingBackend + 'a,
-    B::ErrorType: 'static,
-    C: CoordTranslate,
-{
+pub(super) fn draw_legend<'a, B: Backend + 'a, C: CoordTranslate>(
+    chart: &mut ChartContext<'a, B, C>,
+    at: SeriesLabelPosition,
+) -> anyhow::Result<()> {
     chart
         .configure_series_labels()
         .position(at)
@@ -59,10 +60,7 @@ where
         .map_err(|e| anyhow!("{e}"))
 }
 
-fn draw_on_white<B: DrawingBackend>(what: &impl Draw, area: DrawingArea<B, Shift>) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_on_white<B: Backend>(what: &impl Draw, area: DrawingArea<B, Shift>) -> anyhow::Result<()> {
     area.fill(&WHITE).map_err(|e| anyhow!("{e}"))?;
     what.draw(&area)?;
     area.present().map_err(|e| anyhow!("{e}"))

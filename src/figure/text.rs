@@ -33,8 +33,9 @@ where
 
 type Pixels<P> = ImageBuffer<P, Vec<u8>>;
 
-/// How much of each pixel `text` covers (0 to 255), `height` pixels high.
-pub(super) fn coverage(text: &str, height: f32) -> GrayImage {
+/// How much of each pixel `text` covers (0 to 255), `height` pixels high: to draw on pictures that are not RGB.
+#[must_use]
+pub fn text_coverage(text: &str, height: f32) -> GrayImage {
     let (width, drawn) = text_size(PxScale::from(height), &*FONT, text);
     // Tails reach below the measured box.
     let mut covered = GrayImage::new(width + 2, drawn.max(height.ceil() as u32) + 1);

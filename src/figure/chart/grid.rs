@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::super::picture::{Draw, write_both};
+use super::super::picture::{Backend, Draw, write_both};
 use super::points::colour;
 use super::{Chart, Scales};
 
@@ -41,10 +41,7 @@ struct Grid<'a> {
 }
 
 impl Draw for Grid<'_> {
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-    {
+    fn draw<B: Backend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()> {
         let mut below = area.clone();
         for row in self.rows {
             let (line, rest) = below.split_vertically(self.size[1]);
@@ -66,14 +63,7 @@ impl Draw for Grid<'_> {
 
 const LINE_PX: i32 = 24;
 
-fn key<B: DrawingBackend>(
-    area: &DrawingArea<B, Shift>,
-    words: &[String],
-    colours: &[(usize, String)],
-) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn key<B: Backend>(area: &DrawingArea<B, Shift>, words: &[String], colours: &[(usize, String)]) -> anyhow::Result<()> {
     let failed = |why: DrawingAreaErrorKind<B::ErrorType>| anyhow!("{why}");
     let style = ("sans-serif", 17).into_font().color(&BLACK);
     let mut y = 40;

@@ -4,18 +4,17 @@ use anyhow::anyhow;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::super::picture::Backend;
 use super::super::text::shortened;
 use super::item::{Bar, Item};
-use super::points::{Area, colour, draw_mark, draw_path, draw_points};
+use super::points::{Area, Axis, colour, draw_mark, draw_path, draw_points};
 use super::reach::near;
 
 /// Draws an item; spans and names are drawn with the axes.
-pub(super) fn draw_item<B: DrawingBackend, X, Y>(chart: &mut Area<'_, B, X, Y>, item: &Item) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+pub(super) fn draw_item<B: Backend, X: Axis, Y: Axis>(
+    chart: &mut Area<'_, B, X, Y>,
+    item: &Item,
+) -> anyhow::Result<()> {
     let failed = |e: DrawingAreaErrorKind<B::ErrorType>| anyhow!("{e}");
     match item {
         Item::Spans { .. } | Item::Names(_) | Item::Room(_) => {}
@@ -120,16 +119,11 @@ where
 }
 
 /// Writes names below the horizontal axis, each shortened to the room that its neighbours leave.
-pub(super) fn draw_names<B: DrawingBackend, X, Y>(
+pub(super) fn draw_names<B: Backend, X: Axis, Y: Axis>(
     area: &DrawingArea<B, plotters::coord::Shift>,
     chart: &Area<'_, B, X, Y>,
     names: &[(f64, String)],
-) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+) -> anyhow::Result<()> {
     let base = area.get_base_pixel();
     let y = chart.y_range().start;
     let place = |x: f64| {

@@ -16,10 +16,10 @@ use anyhow::{anyhow, ensure};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::picture::{Draw, draw_legend, short_number, write_both};
+use super::picture::{Backend, Draw, draw_legend, short_number, write_both};
 use ink::{NAME_LINE_PX, draw_item, draw_names};
 use places::ticks;
-use points::{Area, LEGEND_LINE_PX};
+use points::{Area, Axis, LEGEND_LINE_PX};
 use reach::Reach;
 
 pub use grid::{Cell, draw_grid};
@@ -54,24 +54,7 @@ enum Scales {
 /// # Errors
 /// A file that can't be written.
 pub fn draw_charts(charts: &[Chart], width: u32, png: &Path, svg: &Path) -> anyhow::Result<()> {
-    write_both(&Charts(charts), (width, charts.iter().map(|c| c.height).sum()), png, svg)
-}
-
-struct Charts<'a>(&'a [Chart]);
-
-impl Draw for Charts<'_> {
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-    {
-        let mut rest = area.clone();
-        for chart in self.0 {
-            let (own, below) = rest.split_vertically(chart.height);
-            chart.draw(&own, Scales::Linear)?;
-            rest = below;
-        }
-        Ok(())
-    }
+    panels(charts, 1, width, Scales::Linear, png, svg)
 }
 
 /// Draws `charts` as panels, `columns` in a row and `width` pixels wide each, to `png` and `svg`; a row is as high as
@@ -114,10 +97,7 @@ struct Panels<'a> {
 }
 
 impl Draw for Panels<'_> {
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-    {
+    fn draw<B: Backend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()> {
         let across: Vec<i32> = (1..self.columns as i32).map(|k| k * self.width as i32).collect();
         let down: Vec<i32> = self.ends.iter().map(|&end| end as i32).take(self.ends.len().saturating_sub(1)).collect();
         let areas = area.split_by_breakpoints(across, down);
@@ -144,20 +124,14 @@ impl Chart {
         Self { from_zero: true, ..self }
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, scales: Scales) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-    {
+    fn draw<B: Backend>(&self, area: &DrawingArea<B, Shift>, scales: Scales) -> anyhow::Result<()> {
         match scales {
             Scales::Linear => self.draw_linear(area),
             Scales::Logarithmic => self.draw_log(area),
         }
     }
 
-    fn draw_linear<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-    {
+    fn draw_linear<B: Backend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()> {
         let mut reach = Reach::default();
         self.items.iter().for_each(|item| item.reach(&mut reach));
         if self.from_zero {
@@ -218,10 +192,7 @@ impl Chart {
         Ok(())
     }
 
-    fn draw_log<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-    {
+    fn draw_log<B: Backend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()> {
         let (x, y) = (self.log_range(|p| p.x)?, self.log_range(|p| p.y)?);
         // The horizontal axis has its ticks at the decades; the vertical one may lie within a decade.
         let x = (0.999 * 10_f64.powf(x.0.log10().floor()), 1.001 * 10_f64.powf(x.1.log10().ceil()));
@@ -263,12 +234,7 @@ impl Chart {
         self.items.iter().find_map(|item| if let Item::Names(names) = item { Some(names) } else { None })
     }
 
-    fn draw_items<B: DrawingBackend, X, Y>(&self, chart: &mut Area<'_, B, X, Y>) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-        X: Ranged<ValueType = f64>,
-        Y: Ranged<ValueType = f64>,
-    {
+    fn draw_items<B: Backend, X: Axis, Y: Axis>(&self, chart: &mut Area<'_, B, X, Y>) -> anyhow::Result<()> {
         self.items.iter().try_for_each(|item| draw_item(chart, item))
     }
 

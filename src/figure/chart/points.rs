@@ -3,10 +3,15 @@
 use anyhow::anyhow;
 use plotters::prelude::*;
 
-use super::super::picture::COLOURS;
+use super::super::picture::{Backend, COLOURS};
 use super::Chart;
 use super::item::{Item, Mark, MarkShape, Point};
 use super::places::{LETTER_PX, Place, label_steps};
+
+/// An axis of numbers.
+pub(super) trait Axis: Ranged<ValueType = f64> {}
+
+impl<R: Ranged<ValueType = f64>> Axis for R {}
 
 pub(super) type Area<'a, B, X, Y> = ChartContext<'a, B, Cartesian2d<X, Y>>;
 
@@ -21,35 +26,22 @@ const MARK: RGBColor = RGBColor(40, 40, 40);
 const PATH: RGBColor = RGBColor(170, 170, 170);
 
 /// Whether a point lies on the axes; on logarithmic ones no number that isn't positive does.
-fn on_axes<B: DrawingBackend, X, Y>(chart: &Area<'_, B, X, Y>, x: f64, y: f64) -> bool
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+fn on_axes<B: Backend, X: Axis, Y: Axis>(chart: &Area<'_, B, X, Y>, x: f64, y: f64) -> bool {
     chart.x_range().contains(&x) && chart.y_range().contains(&y)
 }
 
 /// The error bar of a point, as far as it lies on the axes: from, to, height.
-fn bar<B: DrawingBackend, X, Y>(chart: &Area<'_, B, X, Y>, point: &Point) -> Option<(f64, f64, f64)>
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+fn bar<B: Backend, X: Axis, Y: Axis>(chart: &Area<'_, B, X, Y>, point: &Point) -> Option<(f64, f64, f64)> {
     let axis = chart.x_range();
     let [low, high] = point.x_range?;
     Some((low.max(axis.start), high.min(axis.end), point.y))
 }
 
 /// A thin grey line from point to point.
-pub(super) fn draw_path<B: DrawingBackend, X, Y>(
+pub(super) fn draw_path<B: Backend, X: Axis, Y: Axis>(
     chart: &mut Area<'_, B, X, Y>,
     points: &[[f64; 2]],
-) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+) -> anyhow::Result<()> {
     let drawable: Vec<(f64, f64)> =
         points.iter().filter(|[x, y]| on_axes(chart, *x, *y)).map(|&[x, y]| (x, y)).collect();
     chart.draw_series(LineSeries::new(drawable, PATH)).map_err(|e| anyhow!("{e}"))?;
@@ -57,18 +49,13 @@ where
 }
 
 /// Dots, full or hollow, with their error bars; the labels come later.
-pub(super) fn draw_points<B: DrawingBackend, X, Y>(
+pub(super) fn draw_points<B: Backend, X: Axis, Y: Axis>(
     chart: &mut Area<'_, B, X, Y>,
     name: &str,
     points: &[Point],
     hollow: bool,
     colour: RGBColor,
-) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+) -> anyhow::Result<()> {
     let mut drawable: Vec<&Point> = points.iter().filter(|p| on_axes(chart, p.x, p.y)).collect();
     drawable.sort_by(|a, b| a.x.total_cmp(&b.x));
     let bars: Vec<_> = drawable.iter().filter_map(|point| bar(chart, point)).collect();
@@ -86,12 +73,10 @@ where
 }
 
 /// A ring or a square.
-pub(super) fn draw_mark<B: DrawingBackend, X, Y>(chart: &mut Area<'_, B, X, Y>, mark: &Mark) -> anyhow::Result<()>
-where
-    B::ErrorType: 'static,
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
+pub(super) fn draw_mark<B: Backend, X: Axis, Y: Axis>(
+    chart: &mut Area<'_, B, X, Y>,
+    mark: &Mark,
+) -> anyhow::Result<()> {
     let style = MARK.stroke_width(2);
     let at = on_axes(chart, mark.x, mark.y).then_some((mark.x, mark.y)).into_iter();
     let square = || Rectangle::new([(-SQUARE_PX, -SQUARE_PX), (SQUARE_PX, SQUARE_PX)], style);
@@ -121,16 +106,11 @@ impl Chart {
     }
 
     /// Writes the points' labels, clear of each other and of the legend where there is room.
-    pub(super) fn draw_labels<B: DrawingBackend, X, Y>(
+    pub(super) fn draw_labels<B: Backend, X: Axis, Y: Axis>(
         &self,
         chart: &mut Area<'_, B, X, Y>,
         legend: Place,
-    ) -> anyhow::Result<()>
-    where
-        B::ErrorType: 'static,
-        X: Ranged<ValueType = f64>,
-        Y: Ranged<ValueType = f64>,
-    {
+    ) -> anyhow::Result<()> {
         let (across, down) = chart.plotting_area().get_pixel_range();
         let about = |(x, y): (i32, i32), half: i32| [x - half, y - half, x + half, y + half];
         let drawable: Vec<&Point> = self.points().filter(|point| on_axes(chart, point.x, point.y)).collect();
@@ -162,14 +142,10 @@ impl Chart {
 
     /// The corner where the legend covers the fewest points (upper right if they are alike), and about where it lies
     /// there.
-    pub(super) fn legend_corner<B: DrawingBackend, X, Y>(
+    pub(super) fn legend_corner<B: Backend, X: Axis, Y: Axis>(
         &self,
         chart: &Area<'_, B, X, Y>,
-    ) -> (SeriesLabelPosition, Place)
-    where
-        X: Ranged<ValueType = f64>,
-        Y: Ranged<ValueType = f64>,
-    {
+    ) -> (SeriesLabelPosition, Place) {
         let entries = || self.items.iter().filter_map(Item::name);
         let letters = entries().map(|name| name.chars().count() as i32).max().unwrap_or(0);
         let (beside, below) = LEGEND_EDGE_PX;
