@@ -183,7 +183,7 @@ fn places(views: &[View]) -> usize {
 }
 
 /// What a person has to know before using the lens.
-pub(super) fn warnings(fit: &Fit, views: &[View], covered: Covered, board: BoardSize) -> Vec<String> {
+pub(super) fn warnings(fit: &Fit, views: &[View], covered: f64, board: BoardSize) -> Vec<String> {
     let mut warnings = Vec::new();
     let together = fit.neighbours(board.columns);
     if together > TOGETHER {
@@ -208,10 +208,10 @@ pub(super) fn warnings(fit: &Fit, views: &[View], covered: Covered, board: Board
             100.0 * sd
         ));
     }
-    if covered.cells < LITTLE_COVERED {
+    if covered < LITTLE_COVERED {
         warnings.push(format!(
             "corners cover {:.0} % of the picture; elsewhere the distortion is extrapolated: hold the board there too",
-            100.0 * covered.cells
+            100.0 * covered
         ));
     }
     let usual = median_of(fit.views.iter().map(super::fit::FittedView::rms_px)).unwrap_or(f64::NAN);

@@ -1,13 +1,14 @@
 //! What was measured: the JSON beside the lens.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::board::BoardSize;
 use super::error::CameraError;
 use super::fit::{Fit, FittedView, OF_LENS};
-use super::judge::{Covered, View};
+use super::judge::{View, covered};
+use super::options::CameraOptions;
 use crate::job::Report;
 
 /// What a run did.
@@ -107,18 +108,18 @@ fn tilt_deg(view: &FittedView) -> f64 {
     (-view.normal().z).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Of what was looked at, and how.
-pub(super) struct About {
-    pub(super) camera: PathBuf,
-    pub(super) board: BoardSize,
-    pub(super) square_mm: f64,
-    pub(super) size: (usize, usize),
-    pub(super) looked_at: usize,
-    pub(super) has_plane: bool,
-}
-
-/// The figures of a fit; with a plane, the last view shows it.
-pub(super) fn figures(fit: &Fit, views: &[View], covered: Covered, about: About) -> Result<CameraFigures, CameraError> {
+/// The figures of a fit to views of a `size`, of the `looked_at` ones; with a plane, the last view shows it. The table
+/// goes to `camera`.
+pub(super) fn figures(
+    fit: &Fit,
+    views: &[View],
+    size: (usize, usize),
+    options: &CameraOptions,
+    looked_at: usize,
+    has_plane: bool,
+    camera: &Path,
+) -> Result<CameraFigures, CameraError> {
+    let covered = covered(views, size);
     let lens = fit.lens;
     let ([fx, fy], [cx, cy], [k1, k2, p1, p2, k3]) = (lens.focal_px, lens.centre_px, lens.distortion);
     let of = |(fitted, view): (&FittedView, &View)| ViewFigures {
@@ -128,21 +129,21 @@ pub(super) fn figures(fit: &Fit, views: &[View], covered: Covered, about: About)
         distance_mm: fitted.pose.translation.iter().map(|t| t * t).sum::<f64>().sqrt(),
     };
     Ok(CameraFigures {
-        camera: about.camera,
-        board: about.board,
-        square_mm: about.square_mm,
-        picture_px: [about.size.0, about.size.1],
+        camera: camera.to_owned(),
+        board: options.board,
+        square_mm: options.square_mm,
+        picture_px: [size.0, size.1],
         lens: LensFigures::of([fx, fy, cx, cy, k1, k2, p1, p2, k3]),
         lens_sd: LensFigures::of(fit.sd()),
         rms_px: fit.rms_px,
         corner_sd_px: fit.corner_sd_px,
-        neighbours: fit.neighbours(about.board.columns),
-        undistorted_sd_px: fit.measures_distortion().then(|| fit.undistorted_sd_px(about.size)).transpose()?,
+        neighbours: fit.neighbours(options.board.columns),
+        undistorted_sd_px: fit.measures_distortion().then(|| fit.undistorted_sd_px(size)).transpose()?,
         covered: covered.cells,
         reach: covered.reach,
-        plane: fit.views.last().filter(|_| about.has_plane).map(PlaneFigures::of),
+        plane: fit.views.last().filter(|_| has_plane).map(PlaneFigures::of),
         views: fit.views.iter().zip(views).map(of).collect(),
-        looked_at: about.looked_at,
+        looked_at,
     })
 }
 

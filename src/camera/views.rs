@@ -157,7 +157,8 @@ fn of_video(
             let grey = Grey { width: still.size.0, height: still.size.1, data: &still.data };
             let Seen { board, other } = stages.time("corners", || board(grey, options.board, other))?;
             let shown = board.map(|corners| corners.into_iter().map(|at| upright(at, turn, still.size)).collect());
-            Ok(Look { name: name(still.index), kind: kind(turn, still.size), board: shown, other })
+            let kind = Kind { size: turn.shown_size(still.size), turned: turn.quarters() as u8 };
+            Ok(Look { name: name(still.index), kind, board: shown, other })
         });
         looks.extend(all.collect::<Result<Vec<Look>, VisionError>>()?);
         other = looks.first().and_then(|look| look.other);
@@ -189,16 +190,6 @@ fn still(frame: &Frame<'_>) -> Still {
         data.extend(row.iter().map(|value| value.round() as u8));
     }
     Still { index: frame.index, size: (width, height), data }
-}
-
-fn kind(turn: Turn, (width, height): (usize, usize)) -> Kind {
-    let (size, turned) = match turn {
-        Turn::None => ((width, height), 0),
-        Turn::Quarter => ((height, width), 1),
-        Turn::Half => ((width, height), 2),
-        Turn::ThreeQuarters => ((height, width), 3),
-    };
-    Kind { size, turned }
 }
 
 fn upright([x, y]: [f32; 2], turn: Turn, size: (usize, usize)) -> [f32; 2] {

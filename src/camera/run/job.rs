@@ -8,9 +8,9 @@ use std::time::Instant;
 use crate::camera::draw::draw;
 use crate::camera::error::CameraError;
 use crate::camera::fit::{Fit, fit};
-use crate::camera::judge::{FEWEST_VIEWS, Sorted, View, covered, refuse, sort, warnings, words};
+use crate::camera::judge::{FEWEST_VIEWS, Sorted, View, refuse, sort, warnings, words};
 use crate::camera::options::{CameraOptions, Inputs};
-use crate::camera::report::{About, CameraReport, figures};
+use crate::camera::report::{CameraReport, figures};
 use crate::camera::run::plan::steps;
 use crate::camera::views::{Look, files, look};
 use crate::files::{Places, beside};
@@ -53,16 +53,7 @@ pub fn run(
     let Sorted { kind, views, failed } = sorted;
     let fitted = stages.time("lens", || of_views(&views, kind.size, options, &failed))?;
     let held = stages.time("lens", || held_at_0(&fitted, &views, kind.size, options))?;
-    let covered = covered(&views, kind.size);
-    let about = About {
-        camera: outputs.out.clone(),
-        board: options.board,
-        square_mm: options.square_mm,
-        size: kind.size,
-        looked_at,
-        has_plane: inputs.plane.is_some(),
-    };
-    let figures = figures(&fitted, &views, covered, about)?;
+    let figures = figures(&fitted, &views, kind.size, options, looked_at, inputs.plane.is_some(), &outputs.out)?;
     notes.extend(weak_k3(&fitted, options));
     notes.extend(not_measured(&fitted));
     places.write(&outputs.out, &figures.toml())?;
@@ -77,7 +68,7 @@ pub fn run(
     let counts = Some([files.len() - videos, videos]);
     let mut report = Report {
         left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
-        warnings: [copied, warnings(&fitted, &views, covered, options.board), held].concat(),
+        warnings: [copied, warnings(&fitted, &views, figures.covered, options.board), held].concat(),
         notes,
         failed,
         pictures,
@@ -119,9 +110,17 @@ fn of_views(
         );
         return Err(CameraError::Undetermined { why, failed: failed.to_vec() });
     }
+    refuse(fit_of(views, size, options, options.coefficients)?, views, failed)
+}
+
+fn fit_of(
+    views: &[View],
+    size: (usize, usize),
+    options: &CameraOptions,
+    coefficients: usize,
+) -> Result<Option<Fit>, CameraError> {
     let corners: Vec<_> = views.iter().map(|view| view.corners.clone()).collect();
-    let points = options.board.points_mm(options.square_mm);
-    refuse(fit(&points, &corners, size, options.coefficients)?, views, failed)
+    fit(&options.board.points_mm(options.square_mm), &corners, size, coefficients)
 }
 
 /// Keeps at most [`MOST_VIEWS`], evenly.
@@ -191,8 +190,7 @@ fn held_at_0(
     if options.coefficients == ALL {
         return Ok(Vec::new());
     }
-    let corners: Vec<_> = views.iter().map(|view| view.corners.clone()).collect();
-    let free = fit(&options.board.points_mm(options.square_mm), &corners, size, ALL)?;
+    let free = fit_of(views, size, options, ALL)?;
     let warned = free.filter(|free| fitted.rms_px > HELD_TIMES * free.rms_px).map(|free| {
         format!(
             "--coefficients {} leaves residuals of {:.3} px RMS, and {ALL} coefficients leave {:.3} px: what is held \
