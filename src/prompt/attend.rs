@@ -143,7 +143,7 @@ impl Onlooker for Attendant {
         let mut shared = desk.lock();
         let now_s = desk.of_host(&shared, now_ns);
         self.look(&mut shared, now_s);
-        shared.fault().map_or(Ok(()), Err)
+        shared.fault.take().map_or(Ok(()), Err)
     }
 
     fn is_over(&self) -> bool {
@@ -177,12 +177,12 @@ impl Attendant {
 impl Alone {
     /// Does what a person would.
     fn look(&mut self, shared: &mut Shared, now_s: f64) {
-        let version = shared.run.version();
+        let version = shared.run.version;
         if self.version != version {
             (self.version, self.since_s) = (version, now_s);
         }
         let waited_s = now_s - self.since_s;
-        let is_check = shared.step().is_some_and(|step| step.kind == StepKind::Check);
+        let is_check = shared.run.current().is_some_and(|step| step.kind == StepKind::Check);
         let tries = |turns: &[Turn]| {
             turns
                 .iter()
@@ -192,7 +192,7 @@ impl Alone {
                 .count()
         };
         match shared.run.phase().0 {
-            Phase::Waiting if tries(shared.run.turns()) >= TRIES => shared.key(Key::Skip, now_s, now_s),
+            Phase::Waiting if tries(&shared.run.turns) >= TRIES => shared.key(Key::Skip, now_s, now_s),
             Phase::Waiting if waited_s >= READS_S => shared.key(Key::Go, now_s, now_s),
             Phase::Running if is_check && waited_s >= PATIENCE_S => shared.key(Key::Stop, now_s, now_s),
             _ => {}

@@ -51,46 +51,38 @@ pub(crate) struct Frame {
     pub(crate) n: u64,
     /// When it is seen, seconds of the server's clock, and how far that may be off.
     pub(crate) time_s: f64,
-    /// See `time_s`.
     pub(crate) uncertainty_s: f64,
     /// Frames of the screen that were left out just before it.
     pub(crate) dropped: u32,
     /// Where no force is on the page, pixels, and how many pixels a newton is.
     pub(crate) centre_px: [f64; 2],
-    /// See `centre_px`.
     pub(crate) px_per_n: f64,
     /// Where no pressing is on the bar, and how many pixels a newton is.
     pub(crate) bar_px: [f64; 2],
     /// The force of the ring, newtons, and where it was drawn.
     pub(crate) prompt_n: Option<[f64; 3]>,
-    /// See `prompt_n`.
     pub(crate) ring_px: Option<[f64; 2]>,
     /// Where the triangle was drawn.
     pub(crate) triangle_px: Option<f64>,
     /// How far the drawn finger was bent, degrees, and its length.
     pub(crate) bend_deg: Option<f64>,
-    /// See `bend_deg`.
     pub(crate) finger_px: f64,
     /// When the force that was shown was measured, seconds of the server's clock, and where disc and line were drawn.
     pub(crate) force_s: Option<f64>,
-    /// See `force_s`.
     pub(crate) disc_px: Option<[f64; 2]>,
-    /// See `force_s`.
     pub(crate) line_px: Option<f64>,
 }
 
 /// How the frames were.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "a comment is of all fields until the next one")]
 pub struct FrameFigures {
     /// Frames that were shown, and those that a screen had time for and that were not.
     pub shown: u64,
-    /// See `shown`.
     pub dropped: u64,
     /// How far frames were off at their own time, pixels: half of them, 99 of 100, all.
     pub off_px_p50: Option<f64>,
-    /// See `off_px_p50`.
     pub off_px_p99: Option<f64>,
-    /// See `off_px_p50`.
     pub off_px_max: Option<f64>,
     /// Frames that showed a ring or finger where nothing was prompted, or none where something was.
     pub mistaken: u64,
@@ -98,11 +90,9 @@ pub struct FrameFigures {
     pub uncertainty_max_s: Option<f64>,
     /// From frame to frame, seconds.
     pub interval_p50_s: Option<f64>,
-    /// See `interval_p50_s`.
     pub interval_p99_s: Option<f64>,
     /// From a force that was measured to the frame that shows it for the first time, seconds.
     pub force_to_frame_p50_s: Option<f64>,
-    /// See `force_to_frame_p50_s`.
     pub force_to_frame_p95_s: Option<f64>,
 }
 

@@ -178,7 +178,7 @@ impl Prompter {
         (report.warnings, report.notes, report.failed) =
             (of_session.warnings.clone(), of_session.notes.clone(), of_session.failed.clone());
         report.left_out.clone_from(&of_session.left_out);
-        report.failed.extend(shared.run.skipped().iter().cloned());
+        report.failed.extend(shared.run.skipped.iter().cloned());
         report.failed.extend(frames.as_ref().err().map(ToString::to_string));
         if !report.completed {
             let (place, count) = shared.run.place();
@@ -191,7 +191,7 @@ impl Prompter {
         if !is_recorded {
             report.failed.push("nothing was collected, and nothing is written".to_owned());
         }
-        let space = shared.run.protocol().space;
+        let space = shared.run.protocol.space;
         drop(shared);
         let mut places = Places::not_over(self.files.protocol.iter());
         if let Some(extra) = report.extra.as_ref().filter(|_| is_recorded) {

@@ -16,6 +16,7 @@ pub type PromptReport = Report<PromptFigures>;
 
 /// The figures of a prompted session.
 #[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, reason = "a comment is of all fields until the next one")]
 pub struct PromptFigures {
     /// The recording.
     pub out: PathBuf,
@@ -30,15 +31,12 @@ pub struct PromptFigures {
     /// How evenly the recorded rows cover the cone: `cone_coverage` of the recording, the finger in the air below
     /// `rest_n`.
     pub coverage: ConeCoverage,
-    /// See `coverage`, newtons.
     pub rest_n: f64,
     /// What would fill what is missing, and the protocol's file of it.
     pub extra: Option<Extra>,
-    /// See `extra`.
     pub extra_file: Option<PathBuf>,
     /// What a page has shown, and the table of it.
     pub frames: Option<FrameFigures>,
-    /// See `frames`.
     pub frames_file: Option<PathBuf>,
 }
 
@@ -54,7 +52,7 @@ pub struct StepFigures {
 }
 
 pub(super) fn figures(shared: &Shared, out: PathBuf) -> PromptFigures {
-    let steps = &shared.run.protocol().steps;
+    let steps = &shared.run.protocol.steps;
     let followed = shared.followed.iter().enumerate().filter(|(_, followed)| followed.forces > 0);
     let step = |place: usize| steps.get(place).map_or(String::new(), |step| step.name.clone());
     let (place, count) = shared.run.place();
@@ -62,7 +60,7 @@ pub(super) fn figures(shared: &Shared, out: PathBuf) -> PromptFigures {
         out,
         rows: shared.cover.rows(),
         completed: place >= count && matches!(shared.run.phase().0, Phase::Done | Phase::Over),
-        turns: shared.run.turns().to_vec(),
+        turns: shared.run.turns.clone(),
         followed: followed
             .map(|(place, followed)| StepFigures {
                 step: step(place),

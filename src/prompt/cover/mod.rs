@@ -22,7 +22,8 @@ pub const REST_N: f64 = 0.05;
 pub(crate) struct Cover {
     space: ForceSpace,
     rows: Vec<[f64; 3]>,
-    cells: Vec<bool>,
+    /// Which have a row.
+    pub(in crate::prompt) cells: Vec<bool>,
     /// Rows that the latest coverage is of.
     looked_at: usize,
     looking: Arc<AtomicBool>,
@@ -50,12 +51,6 @@ impl Cover {
             self.cells[cell] = true;
         }
         self.rows.push(force_n);
-    }
-
-    /// Which cells have a row.
-    #[must_use]
-    pub(crate) fn cells(&self) -> &[bool] {
-        &self.cells
     }
 
     /// The share of cells with a row.

@@ -16,7 +16,7 @@ use show::{force_json, state_json};
 use crate::live::LiveError;
 use crate::prompt::cover::Cover;
 use crate::prompt::frames::{Frame, Frames};
-use crate::prompt::protocol::{Prompted, Step};
+use crate::prompt::protocol::Prompted;
 use crate::prompt::run::{Key, Phase, Run};
 
 /// A page that listens hears the state so often at least, seconds.
@@ -70,7 +70,8 @@ pub(in crate::prompt) struct Shared {
     pub(in crate::prompt) followed: Vec<Followed>,
     /// Further messages to a person.
     pub(in crate::prompt) extra_asked: bool,
-    fault: Option<LiveError>,
+    /// What could not be written.
+    pub(in crate::prompt) fault: Option<LiveError>,
     shown_s: f64,
     shown_version: u64,
 }
@@ -98,7 +99,7 @@ struct Seen {
 
 impl Desk {
     pub(in crate::prompt) fn new(run: Run, frames: Frames, pace: Pace, show: Arc<dyn Show>) -> Self {
-        let cover = Cover::new(run.protocol().space);
+        let cover = Cover::new(run.protocol.space);
         let shared = Shared {
             run,
             cover,
@@ -157,7 +158,7 @@ impl Desk {
         shared.run.page(now_s);
         for frame in &frames {
             let (prompted, place) = shared.run.prompted(frame.time_s);
-            let steps = &shared.run.protocol().steps;
+            let steps = &shared.run.protocol.steps;
             let step = place.and_then(|(place, _)| steps.get(place)).map_or(String::new(), |step| step.name.clone());
             if let Err(why) = shared.frames.push(frame, prompted, &step) {
                 shared.fault.get_or_insert(why);
@@ -168,8 +169,8 @@ impl Desk {
 
     /// The page hears the state where it changed, or is due.
     pub(in crate::prompt) fn tell(&self, shared: &mut Shared, now_s: f64) {
-        if shared.shown_version != shared.run.version() || now_s - shared.shown_s >= STATE_S {
-            (shared.shown_s, shared.shown_version) = (now_s, shared.run.version());
+        if shared.shown_version != shared.run.version || now_s - shared.shown_s >= STATE_S {
+            (shared.shown_s, shared.shown_version) = (now_s, shared.run.version);
             self.show.state(&state_json(shared, now_s));
         }
     }
@@ -194,7 +195,7 @@ impl Shared {
     pub(in crate::prompt) fn key(&mut self, key: Key, key_s: f64, now_s: f64) {
         if key == Key::Extra && *self.run.phase().0 == Phase::Done {
             if let Some(extra) = self.cover.extra() {
-                let session = self.run.protocol().steps.iter().map(|step| step.session).max().unwrap_or(1);
+                let session = self.run.protocol.steps.iter().map(|step| step.session).max().unwrap_or(1);
                 self.run.append(extra.step(session));
                 self.extra_asked = true;
             }
@@ -225,15 +226,5 @@ impl Shared {
     pub(in crate::prompt) fn followed_n(&self, place: usize) -> Option<f64> {
         let followed = self.followed.get(place).filter(|followed| followed.forces > 0)?;
         Some((followed.squares / followed.forces as f64).sqrt())
-    }
-
-    /// What could not be written, once.
-    pub(in crate::prompt) fn fault(&mut self) -> Option<LiveError> {
-        self.fault.take()
-    }
-
-    /// The step that it is at.
-    pub(in crate::prompt) fn step(&self) -> Option<&Step> {
-        self.run.current()
     }
 }

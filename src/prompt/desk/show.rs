@@ -83,7 +83,7 @@ pub(super) fn state_json(shared: &mut Shared, now_s: f64) -> String {
     let (phase, why) = shared.run.phase();
     let (place, count) = shared.run.place();
     let done = phase.word() == "done";
-    let step = shared.step().map(|step| StepState {
+    let step = shared.run.current().map(|step| StepState {
         place,
         count,
         name: &step.name,
@@ -102,7 +102,7 @@ pub(super) fn state_json(shared: &mut Shared, now_s: f64) -> String {
     });
     let checks = shared.run.verdicts().into_iter();
     let checks = checks.map(|(check, verdict)| CheckState { check, passed: verdict.passed, says: verdict.says });
-    let protocol = shared.run.protocol();
+    let protocol = &shared.run.protocol;
     let state = State {
         now_s: short(now_s),
         phase: phase.word(),
@@ -116,7 +116,7 @@ pub(super) fn state_json(shared: &mut Shared, now_s: f64) -> String {
         cover: CoverState {
             rows: shared.cover.rows(),
             visited: shared.cover.visited(),
-            cells: shared.cover.cells().iter().map(|cell| if *cell { '1' } else { '0' }).collect(),
+            cells: shared.cover.cells.iter().map(|cell| if *cell { '1' } else { '0' }).collect(),
             hole_n: hole.map(|hole| hole.radius_n),
             hole_at_n: hole.map(|hole| hole.middle_n),
         },
@@ -128,7 +128,7 @@ pub(super) fn state_json(shared: &mut Shared, now_s: f64) -> String {
 
 fn ahead(shared: &Shared, now_s: f64) -> Vec<Piece> {
     let (from_s, until_s) = (now_s - BACK_S, now_s + AHEAD_S);
-    let course = shared.run.course();
+    let course = &shared.run.course;
     let later = course.stretches().iter().map(|stretch| stretch.from_s);
     let mut bounds: Vec<f64> = vec![from_s];
     bounds.extend(later.filter(|begins_s| (from_s..until_s).contains(begins_s)));

@@ -94,22 +94,6 @@ impl Protocol {
         }
     }
 
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// A file that can't be read, or all its faults.
-    pub fn read(path: &FilePath) -> Result<Self, ProtocolError> {
-        read::read(path)
-    }
-
-    /// Reads a text; `path` is for the messages.
-    ///
-    /// # Errors
-    /// All its faults.
-    pub fn parse(text: &str, path: &FilePath) -> Result<Self, ProtocolError> {
-        read::parse(text, path)
-    }
-
     /// The largest pressing that any step prompts, or the cone's, newtons: what the colours go up to.
     #[must_use]
     pub fn scale_n(&self) -> f64 {

@@ -58,22 +58,32 @@ const COMMON: [&str; 7] = ["kind", "name", "text", "collect", "starts", "session
 /// When a step begins.
 const STARTS: [&str; 2] = ["space", "at once"];
 
-pub(super) fn read(path: &FilePath) -> Result<Protocol, ProtocolError> {
-    let unreadable = |why| ProtocolError::Unreadable { path: path.to_owned(), why };
-    let bytes = crate::input::read(path).map_err(unreadable)?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "not UTF-8 text")))?;
-    parse(&text, path)
-}
+impl Protocol {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that can't be read, or all its faults.
+    pub fn read(path: &FilePath) -> Result<Self, ProtocolError> {
+        let unreadable = |why| ProtocolError::Unreadable { path: path.to_owned(), why };
+        let bytes = crate::input::read(path).map_err(unreadable)?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| unreadable(std::io::Error::new(std::io::ErrorKind::InvalidData, "not UTF-8 text")))?;
+        Self::parse(&text, path)
+    }
 
-pub(super) fn parse(text: &str, path: &FilePath) -> Result<Protocol, ProtocolError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut findings = Findings::new(text);
-    let protocol = findings.parse().and_then(|table| protocol(&mut findings, &entries(table.get_ref())));
-    let refused = |faults| ProtocolError::Faults { path: path.to_owned(), faults };
-    findings.finish().map_err(refused)?;
-    let nothing = || refused(vec![Fault { line: 1, column: 1, what: "is no protocol".to_owned() }]);
-    protocol.ok_or_else(nothing)
+    /// Reads a text; `path` is for the messages.
+    ///
+    /// # Errors
+    /// All its faults.
+    pub fn parse(text: &str, path: &FilePath) -> Result<Self, ProtocolError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut findings = Findings::new(text);
+        let protocol = findings.parse().and_then(|table| protocol(&mut findings, &entries(table.get_ref())));
+        let refused = |faults| ProtocolError::Faults { path: path.to_owned(), faults };
+        findings.finish().map_err(refused)?;
+        let nothing = || refused(vec![Fault { line: 1, column: 1, what: "is no protocol".to_owned() }]);
+        protocol.ok_or_else(nothing)
+    }
 }
 
 fn protocol(findings: &mut Findings<'_>, all: &[Entry<'_>]) -> Option<Protocol> {

@@ -11,7 +11,7 @@
 mod course;
 mod gates;
 
-pub(crate) use course::{Course, Stretch, What};
+pub(crate) use course::{Course, What};
 pub(crate) use gates::{Gates, Verdict};
 
 use serde::{Deserialize, Serialize};
@@ -101,8 +101,9 @@ pub struct Turn {
 /// A protocol under way.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
-    protocol: Protocol,
-    course: Course,
+    /// With what was added.
+    pub(in crate::prompt) protocol: Protocol,
+    pub(in crate::prompt) course: Course,
     /// Which step; as many as there are once all are done.
     step: usize,
     phase: Phase,
@@ -114,10 +115,12 @@ pub(crate) struct Run {
     page_s: Option<f64>,
     /// When it stopped, seconds.
     stood_from_s: f64,
-    turns: Vec<Turn>,
-    skipped: Vec<String>,
-    /// Counts what a page has to know of.
-    version: u64,
+    /// What happened so far.
+    pub(in crate::prompt) turns: Vec<Turn>,
+    /// Steps that were passed over, in words.
+    pub(in crate::prompt) skipped: Vec<String>,
+    /// Changes with whatever a page has to know at once.
+    pub(in crate::prompt) version: u64,
 }
 
 impl Run {
@@ -156,7 +159,7 @@ impl Run {
             (Key::Go, Phase::Stalled) => self.pause_stalled(now_s),
             (Key::Go, Phase::Paused) => self.go_on(now_s),
             (Key::Reset, Phase::Running | Phase::Paused | Phase::Stalled) => {
-                let what = self.at(now_s).0.what;
+                let what = self.course.at(now_s).0.what;
                 self.course.push(
                     now_s + LEAD_S,
                     0.0,
@@ -238,7 +241,7 @@ impl Run {
     }
 
     fn advance_movement(&mut self, now_s: f64) {
-        let (stretch, at_s) = self.at(now_s);
+        let (stretch, at_s) = self.course.at(now_s);
         if stretch.what != What::Step(self.step) {
             // It is about to begin.
             return;
@@ -305,7 +308,7 @@ impl Run {
         // The finger presses only once the tare is known.
         let waits_for = verdicts.iter().find(|(check, verdict)| *check >= Check::Tare && !verdict.passed);
         let what = if waits_for.is_some_and(|(check, _)| *check == Check::Sign) { What::Press } else { What::Nothing };
-        if self.at(now_s + LEAD_S).0.what != what {
+        if self.course.at(now_s + LEAD_S).0.what != what {
             self.course.push(now_s + LEAD_S, 0.0, what, false);
             self.version += 1;
         }
@@ -379,7 +382,7 @@ impl Run {
             return self.enter(Phase::Stalled, why);
         }
         self.page(now_s);
-        let at_s = self.at(now_s + LEAD_S).1;
+        let at_s = self.course.at(now_s + LEAD_S).1;
         let from_s = self.course.push(now_s + LEAD_S, at_s, What::Step(self.step), true);
         let stood_s = Some((from_s - self.stood_from_s).max(0.0));
         self.note(from_s, "goes on", String::new(), stood_s);
@@ -392,12 +395,8 @@ impl Run {
     }
 
     fn note(&mut self, time_s: f64, event: &'static str, why: String, stood_s: Option<f64>) {
-        let at_s = self.at(time_s).1;
+        let at_s = self.course.at(time_s).1;
         self.turns.push(Turn { time_s, step: self.name(), at_s, event, why, stood_s });
-    }
-
-    fn at(&self, time_s: f64) -> (Stretch, f64) {
-        self.course.at(time_s)
     }
 
     fn name(&self) -> String {
@@ -417,7 +416,7 @@ impl Run {
     /// What is prompted at `time_s`, if anything, and the step's place and own time, where it is one's.
     #[must_use]
     pub(crate) fn prompted(&self, time_s: f64) -> (Option<Prompted>, Option<(usize, f64)>) {
-        let (stretch, at_s) = self.at(time_s);
+        let (stretch, at_s) = self.course.at(time_s);
         match stretch.what {
             What::Nothing => (None, None),
             What::Press => {
@@ -434,7 +433,7 @@ impl Run {
     /// The step whose rows are collected at `time_s`; none while nothing moves.
     #[must_use]
     pub(crate) fn collecting(&self, time_s: f64) -> Option<&Step> {
-        let (stretch, at_s) = self.at(time_s);
+        let (stretch, at_s) = self.course.at(time_s);
         let What::Step(place) = stretch.what else { return None };
         let step = self.protocol.steps.get(place).filter(|step| step.collects && stretch.moves)?;
         step.motion().is_some_and(|motion| at_s <= motion.whole_s()).then_some(step)
@@ -450,36 +449,6 @@ impl Run {
     #[must_use]
     pub(crate) fn place(&self) -> (usize, usize) {
         (self.step, self.protocol.steps.len())
-    }
-
-    /// The protocol, with what was added.
-    #[must_use]
-    pub(crate) fn protocol(&self) -> &Protocol {
-        &self.protocol
-    }
-
-    /// What happened so far.
-    #[must_use]
-    pub(crate) fn turns(&self) -> &[Turn] {
-        &self.turns
-    }
-
-    /// Stretches in which a step moved or stood still.
-    #[must_use]
-    pub(crate) fn course(&self) -> &Course {
-        &self.course
-    }
-
-    /// Steps that were passed over, in words.
-    #[must_use]
-    pub(crate) fn skipped(&self) -> &[String] {
-        &self.skipped
-    }
-
-    /// Changes with whatever a page has to know at once.
-    #[must_use]
-    pub(crate) fn version(&self) -> u64 {
-        self.version
     }
 }
 

@@ -56,7 +56,7 @@ impl Bench {
     }
 
     fn events(&self) -> Vec<&'static str> {
-        self.run.turns().iter().map(|turn| turn.event).collect()
+        self.run.turns.iter().map(|turn| turn.event).collect()
     }
 }
 
@@ -83,13 +83,13 @@ fn a_step_waits_moves_pauses_goes_on_and_ends() {
     bench.key(Key::Go);
     bench.pass(1.0);
     assert!(near(bench.at_s(), stopped_s + 1.0 - LEAD_S));
-    let went_on = bench.run.turns().last().unwrap();
+    let went_on = bench.run.turns.last().unwrap();
     assert!(went_on.event == "goes on" && near(went_on.stood_s.unwrap(), 3.1 + LEAD_S), "{went_on:?}");
     bench.pass(30.0);
     assert_eq!(bench.phase(), Phase::Done);
     assert_eq!(bench.events(), ["begins", "paused", "goes on", "ends", "done"]);
-    let ended = &bench.run.turns()[3];
-    assert!(near(ended.time_s - bench.run.turns()[2].time_s, 22.0 - stopped_s), "the release is part of it");
+    let ended = &bench.run.turns[3];
+    assert!(near(ended.time_s - bench.run.turns[2].time_s, 22.0 - stopped_s), "the release is part of it");
     assert!(bench.run.collecting(bench.now_s).is_none() && bench.run.prompted(bench.now_s).0.is_none());
 }
 
@@ -132,7 +132,7 @@ fn a_silent_force_stops_the_ring_and_collects_nothing_until_it_is_back() {
         (bench.force, bench.samples) = (Some([0.0; 3]), true);
         bench.pass(1.0);
         assert!(bench.phase() == Phase::Running && bench.at_s() > stood_s && bench.at_s() < stood_s + 1.0);
-        let turn = bench.run.turns().last().unwrap();
+        let turn = bench.run.turns.last().unwrap();
         assert!(turn.event == "goes on" && turn.stood_s.is_some_and(|stood_s| stood_s > 4.9), "{turn:?}");
     }
 }
@@ -209,7 +209,7 @@ fn a_sensor_that_jumps_while_bending_has_the_step_repeated_and_who_goes_on_is_to
     let mut bench = Bench::new(CHECKS);
     bench.key(Key::Go);
     bench.key(Key::Skip);
-    assert!(bench.run.skipped()[0].starts_with("check: passed over"), "{:?}", bench.run.skipped());
+    assert!(bench.run.skipped[0].starts_with("check: passed over"), "{:?}", bench.run.skipped);
     bench.key(Key::Go);
     bench.pass(2.0);
     bench.run.sample(bench.now_s + 0.001, Some(&[4.0]));
