@@ -63,10 +63,7 @@ pub(crate) fn calibrate(
 ) -> Result<Calibration, VisionError> {
     const CALL: &str = "calibrateCamera";
     ready()?;
-    let board: Vector<Point3f> = points.iter().map(|p| Point3f::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect();
-    let boards: Vector<Vector<Point3f>> = views.iter().map(|_| board.clone()).collect();
-    let seen = |view: &Vec<[f32; 2]>| view.iter().map(|at| Point2f::new(at[0], at[1])).collect::<Vector<Point2f>>();
-    let seen: Vector<Vector<Point2f>> = views.iter().map(seen).collect();
+    let (boards, seen) = boards(points, views);
     let flags = CALIB_USE_LU
         | match coefficients {
             0 => CALIB_ZERO_TANGENT_DIST | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3,
@@ -103,6 +100,13 @@ pub(crate) fn calibrate(
         distortion: numbers(CALL, &distortion)?,
     };
     Ok(Calibration { intrinsics, poses })
+}
+
+/// The board's points, and where they are seen, for each view.
+fn boards(points: &[[f64; 3]], views: &[Vec<[f32; 2]>]) -> (Vector<Vector<Point3f>>, Vector<Vector<Point2f>>) {
+    let board: Vector<Point3f> = points.iter().map(|p| Point3f::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect();
+    let seen = |view: &Vec<[f32; 2]>| view.iter().map(|at| Point2f::new(at[0], at[1])).collect::<Vector<Point2f>>();
+    (views.iter().map(|_| board.clone()).collect(), views.iter().map(seen).collect())
 }
 
 /// Where a lens shows a board, and how that changes.
@@ -181,10 +185,7 @@ pub(crate) fn opencvs_sd(
     views: &[Vec<[f32; 2]>],
     (width, height): (usize, usize),
 ) -> Result<[f64; 9], VisionError> {
-    let board: Vector<Point3f> = points.iter().map(|p| Point3f::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect();
-    let boards: Vector<Vector<Point3f>> = views.iter().map(|_| board.clone()).collect();
-    let seen = |view: &Vec<[f32; 2]>| view.iter().map(|at| Point2f::new(at[0], at[1])).collect::<Vector<Point2f>>();
-    let seen: Vector<Vector<Point2f>> = views.iter().map(seen).collect();
+    let (boards, seen) = boards(points, views);
     let mut mats: [Mat; 4] = std::array::from_fn(|_| Mat::default());
     let [matrix, distortion, lens_sd, rest] = &mut mats;
     let (mut rotations, mut translations) = (Vector::<Mat>::new(), Vector::<Mat>::new());
