@@ -69,7 +69,7 @@ struct At {
     motion: Affine,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 enum State {
     /// The last frame, and the one before where that is known.
     Followed(At, Option<At>),
@@ -117,18 +117,13 @@ impl Follower {
         }
     }
 
-    /// The next frame could not be decoded.
-    pub(in crate::nailvideo) fn skip(&mut self) -> Lost {
-        Lost::Undecoded
-    }
-
     /// Where the nail is in the next frame.
     ///
     /// # Errors
     /// [`Lost`] where that is not known.
     pub(in crate::nailvideo) fn step(&mut self, frame: &Frame<'_>) -> Result<Place, Lost> {
         let time_s = frame.time_s;
-        match self.state.clone() {
+        match self.state {
             State::Followed(at, before) => {
                 let expected = predicted(&at, before.as_ref(), time_s);
                 let found = self.near(frame, After::Frame, &expected, &at.motion);
@@ -139,10 +134,7 @@ impl Follower {
                         self.state = State::Followed(At { time_s, motion: place.motion }, Some(at));
                         Ok(place)
                     }
-                    Err(lost) => {
-                        self.state = State::Lost;
-                        self.again(frame).map_or(Err(lost), |_| Err(lost))
-                    }
+                    Err(lost) => self.lose(frame, lost),
                 }
             }
             State::Trial(at, count) => {
@@ -158,14 +150,18 @@ impl Follower {
                         self.state = State::Followed(here, Some(at));
                         Ok(place)
                     }
-                    Err(lost) => {
-                        self.state = State::Lost;
-                        self.again(frame).map_or(Err(lost), |_| Err(lost))
-                    }
+                    Err(lost) => self.lose(frame, lost),
                 }
             }
             State::Lost => self.again(frame).map_or_else(Err, |()| Err(Lost::Trial)),
         }
+    }
+
+    /// It is lost, and looked for at once.
+    fn lose(&mut self, frame: &Frame<'_>, lost: Lost) -> Result<Place, Lost> {
+        self.state = State::Lost;
+        let _on_trial = self.again(frame);
+        Err(lost)
     }
 
     /// Near where it is expected, by the fine template alone where that comes to rest.

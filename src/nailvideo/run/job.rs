@@ -333,7 +333,7 @@ impl Job<'_> {
     ) -> Result<Kept, NailVideoError> {
         let place = match frame {
             Some(frame) => self.stages.time("follow", || work.follower.step(frame)),
-            None => Err(work.follower.skip()),
+            None => Err(Lost::Undecoded),
         };
         work.motion.add(index, time_s, &place)?;
         let mut lost = Kept { index, time_s, place: Err(Lost::Outside), readings: Vec::new(), skin: f64::NAN };
