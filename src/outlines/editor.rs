@@ -152,7 +152,7 @@ impl Editor {
     }
 
     fn snap(&self, state: &mut State, at: usize) {
-        let picture = match self.picture_of(state, at) {
+        let picture = match self.picture(state.items[at].photo) {
             Ok(picture) => picture,
             Err(why) => return state.fault(why),
         };
@@ -256,7 +256,7 @@ impl Editor {
         let middle = state.items[at].view.map(|view| {
             [f64::from(view.x) + f64::from(view.width) / 2.0, f64::from(view.y) + f64::from(view.height) / 2.0]
         });
-        let picture = match self.picture_of(state, at) {
+        let picture = match self.picture(state.items[at].photo) {
             Ok(picture) => picture,
             Err(why) => return state.fault(why),
         };
@@ -295,7 +295,7 @@ impl Editor {
     fn come(&self, state: &mut State) {
         let Some(at) = state.current() else { return };
         state.whole |= state.items[at].rank == Rank::Missing && !state.items[at].is_changed();
-        if let Err(why) = self.picture_of(state, at) {
+        if let Err(why) = self.picture(state.items[at].photo) {
             state.fault(why);
         }
         let Some(next) = state.trail.get(state.at + 1).copied().or_else(|| state.ahead()) else { return };
@@ -310,10 +310,6 @@ impl Editor {
         });
     }
 
-    fn picture_of(&self, state: &State, at: usize) -> Result<Arc<Photograph>, String> {
-        self.picture(state.items[at].photo)
-    }
-
     fn picture(&self, photo: usize) -> Result<Arc<Photograph>, String> {
         let photo_of = &self.set.photos[photo];
         let named = |why| format!("{}: {why}", photo_of.file);
@@ -324,7 +320,7 @@ impl Editor {
     fn tell(&self, state: &mut State) {
         state.revision += 1;
         if let Some(at) = state.current()
-            && let Ok(picture) = self.picture_of(state, at)
+            && let Ok(picture) = self.picture(state.items[at].photo)
         {
             let size = [picture.image.width(), picture.image.height()];
             let item = &state.items[at];

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use super::plane::Channel;
+use crate::job;
 
 /// How values between pixels come about; `tradeoff photos` shows what each costs and gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
@@ -55,7 +56,7 @@ pub struct Normalization {
 impl Default for Normalization {
     /// The thesis' 400 x 400 pixels of 125 % of the nail, green as encoded.
     fn default() -> Self {
-        Self { size: 400, margin: 1.25, channel: Channel::Green, linear: false, resample: Resample::Cubic, white: None }
+        job::defaults()
     }
 }
 

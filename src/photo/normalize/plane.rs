@@ -3,7 +3,7 @@
 //! Only the rectangle that a nail needs is taken, and from a grey photograph no channel is chosen at all. A fully
 //! transparent pixel was not photographed: its value is NaN, and so is everything interpolated from it.
 
-use image::DynamicImage;
+use image::{DynamicImage, Primitive};
 
 /// Which channel of a colour photograph is the value. The thesis finds the colour of the nail bed mainly in the green
 /// one (section 4.2.2).
@@ -78,13 +78,19 @@ impl Plane {
         plane
     }
 
-    fn fill<S: Sample>(&mut self, samples: &[S], [columns, rows]: [usize; 2], layout: Samples, linear: bool) {
+    fn fill<S: Primitive + Into<f32>>(
+        &mut self,
+        samples: &[S],
+        [columns, rows]: [usize; 2],
+        layout: Samples,
+        linear: bool,
+    ) {
         let Samples { channels, index, alpha } = layout;
         let value = |pixel: &[S]| {
-            if alpha.is_some_and(|a| pixel[a].is_zero()) {
+            if alpha.is_some_and(|a| pixel[a] == S::DEFAULT_MIN_VALUE) {
                 return f32::NAN;
             }
-            let fraction = pixel[index].fraction();
+            let fraction = pixel[index].into() / S::DEFAULT_MAX_VALUE.into();
             if linear { linear_from_srgb(fraction) } else { fraction }
         };
         let inside = |at: i64, count: usize| at.clamp(0, count as i64 - 1) as usize;
@@ -136,29 +142,6 @@ struct Samples {
     channels: usize,
     index: usize,
     alpha: Option<usize>,
-}
-
-trait Sample: Copy {
-    fn fraction(self) -> f32;
-    fn is_zero(self) -> bool;
-}
-
-impl Sample for u8 {
-    fn fraction(self) -> f32 {
-        f32::from(self) / 255.0
-    }
-    fn is_zero(self) -> bool {
-        self == 0
-    }
-}
-
-impl Sample for u16 {
-    fn fraction(self) -> f32 {
-        f32::from(self) / 65535.0
-    }
-    fn is_zero(self) -> bool {
-        self == 0
-    }
 }
 
 /// IEC 61966-2-1: light, as a fraction of white, from the encoded fraction.

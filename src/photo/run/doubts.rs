@@ -56,13 +56,11 @@ fn linear(nails: &[Used]) -> Option<String> {
     median_of(known.iter().map(|(_, linear)| *linear)).filter(|usual| *usual < below)?;
     let such: Vec<String> =
         known.iter().filter(|(_, linear)| *linear > beyond).map(|(subject, _)| (*subject).to_owned()).collect();
-    (known.len() >= SUBJECTS && !such.is_empty()).then(|| {
-        format!(
-            "the photographs of {} are darker and more coloured than the others': have they linear values (raw), or \
-             another camera's curve, or very dim light? Means and standard deviations mix both; bring all to one curve",
-            some(&such)
-        )
-    })
+    let such = some(&such).filter(|_| known.len() >= SUBJECTS)?;
+    Some(format!(
+        "the photographs of {such} are darker and more coloured than the others': have they linear values (raw), or \
+         another camera's curve, or very dim light? Means and standard deviations mix both; bring all to one curve"
+    ))
 }
 
 /// Nails whose drawn axis the picture sees slant.
@@ -84,15 +82,13 @@ fn slanting(nails: &[Used]) -> Option<String> {
 fn elsewhere(nails: &[Used]) -> Option<String> {
     let such = nails.iter().filter_map(|nail| Some((&nail.photo.file, nail.row.number, nail.row.instead.as_ref()?)));
     let such: Vec<String> = such.map(|(file, number, instead)| format!("{file}, nail {number} ({instead})")).collect();
-    (!such.is_empty()).then(|| {
-        format!(
-            "by the network that finds nails, {} of {} outlines are not where the nail is: {}; look at them with \
-             `lunula edit`",
-            such.len(),
-            nails.len(),
-            some(&such)
-        )
-    })
+    Some(format!(
+        "by the network that finds nails, {} of {} outlines are not where the nail is: {}; look at them with \
+         `lunula edit`",
+        such.len(),
+        nails.len(),
+        some(&such)?
+    ))
 }
 
 /// What there is to say.
@@ -126,18 +122,18 @@ impl<'a> Used<'a> {
     }
 }
 
-/// The first names of several, and how many more there are.
-fn some(names: &[String]) -> String {
+/// The first names of several, and how many more there are; none of none.
+fn some(names: &[String]) -> Option<String> {
     let more = names.len().saturating_sub(NAMES);
     let first = names[..names.len() - more].join(", ");
-    if more > 0 { format!("{first} and {more} more") } else { first }
+    (!names.is_empty()).then(|| if more > 0 { format!("{first} and {more} more") } else { first })
 }
 
 /// The photographs of nails, each once, where there are some.
 fn files<'a, 'b: 'a>(nails: impl Iterator<Item = &'a Used<'b>>) -> Option<String> {
     let mut names: Vec<String> = nails.map(|nail| nail.photo.file.clone()).collect();
     names.dedup();
-    (!names.is_empty()).then(|| some(&names))
+    some(&names)
 }
 
 fn as_listed(photo: &Photo) -> String {
@@ -173,9 +169,7 @@ fn same_pictures(nails: &[Used]) -> Option<String> {
         .filter(|group| !is_said(group))
         .map(|group| group.iter().map(|nail| as_listed(nail.photo)).collect::<Vec<_>>().join(" and "))
         .collect();
-    (!names.is_empty()).then(|| {
-        format!("the same nail to the last digit is counted more than once: {}; keep the right one", some(&names))
-    })
+    Some(format!("the same nail to the last digit is counted more than once: {}; keep the right one", some(&names)?))
 }
 
 /// Outlines that several photographs share: drawn for one of them.
@@ -191,13 +185,11 @@ fn same_outlines(nails: &[Used]) -> Option<String> {
         .iter()
         .map(|group| group.iter().map(|nail| nail.photo.file.clone()).collect::<Vec<_>>().join(" and "))
         .collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "photographs share one outline to the last digit: {}; was it drawn on each of them? One that was copied \
-             from another pose or person shows another place of the finger",
-            some(&names)
-        )
-    })
+    Some(format!(
+        "photographs share one outline to the last digit: {}; was it drawn on each of them? One that was copied \
+         from another pose or person shows another place of the finger",
+        some(&names)?
+    ))
 }
 
 /// Nails that are far brighter or darker than all others.
@@ -209,14 +201,12 @@ fn levels(nails: &[Used]) -> Option<String> {
         .filter(off)
         .map(|nail| format!("{} ({:.1} %)", nail.photo.file, 100.0 * nail.survey.mean()))
         .collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "nails are far brighter or darker than usual, which is {:.1} % of full scale in green: {}; are these of \
-             another exposure, or of fewer bits kept in 16 (--white)? Maps average them with the others",
-            100.0 * usual,
-            some(&names)
-        )
-    })
+    Some(format!(
+        "nails are far brighter or darker than usual, which is {:.1} % of full scale in green: {}; are these of \
+         another exposure, or of fewer bits kept in 16 (--white)? Maps average them with the others",
+        100.0 * usual,
+        some(&names)?
+    ))
 }
 
 /// Pictures that are flat at their brightest, below full scale: what was cut off was scaled down afterwards.
@@ -246,25 +236,21 @@ fn folders(set: &PhotoSet) -> Option<String> {
         .iter()
         .filter(|photo| folder(photo).is_some_and(|folder| folder != photo.pose && poses.contains(&folder.as_str())));
     let names: Vec<String> = others.map(as_listed).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "photos.csv lists {} photograph(s) in the folder of one pose as another's: {}; was a column sorted by \
-             itself?",
-            names.len(),
-            some(&names)
-        )
-    })
+    Some(format!(
+        "photos.csv lists {} photograph(s) in the folder of one pose as another's: {}; was a column sorted by \
+         itself?",
+        names.len(),
+        some(&names)?
+    ))
 }
 
 /// Photographs in folders within those of poses.
 fn deeper(set: &PhotoSet) -> Option<String> {
     let such = set.deeper.iter().map(|(folder, pictures)| format!("{pictures} picture(s) in {folder}"));
     let such: Vec<String> = such.collect();
-    (!such.is_empty()).then(|| {
-        format!(
-            "folders within a pose's are not looked into: {}; move what belongs to the set up into the pose's folder, \
-             or list all in photos.csv",
-            some(&such)
-        )
-    })
+    Some(format!(
+        "folders within a pose's are not looked into: {}; move what belongs to the set up into the pose's folder, \
+         or list all in photos.csv",
+        some(&such)?
+    ))
 }

@@ -122,13 +122,12 @@ impl Frame<'_> {
 
     /// Mean difference from skin in a strip from 0.1 to 0.6 nail lengths behind the proximal end.
     fn unlike_skin_behind(&self) -> f32 {
-        let cells = (1..=6).flat_map(|j| {
-            (-2..=2).map(move |i| {
-                let (u, v) = (self.middle() + 0.15 * LENGTH * i as f32, self.along[0] - 0.1 * LENGTH * j as f32);
-                self.patch.unlike_skin(self.at(u, v))
-            })
+        let cells = (0..30).map(|k: i32| {
+            let (i, j) = (k % 5 - 2, k / 5 + 1);
+            let (u, v) = (self.middle() + 0.15 * LENGTH * i as f32, self.along[0] - 0.1 * LENGTH * j as f32);
+            self.patch.unlike_skin(self.at(u, v))
         });
-        mean(cells, UNSEEN_SKIN)
+        mean_above(f32::NEG_INFINITY, cells, UNSEEN_SKIN)
     }
 
     /// The part of the nail that stays on it when mirrored about the axis.
@@ -150,7 +149,8 @@ const AT_A_TIME: usize = 4;
 /// Rounding of a mean of some dozen values, and much more.
 const ROUNDING: f32 = 1e-4;
 
-/// The [`mean`] of values of 0 to 1 where it is above `best`; where it can't be, 0, and not all of them are looked at.
+/// The mean of values of 0 to 1, in which what is missing counts as `unseen`, but less than what is seen. Where it can't
+/// be above `best`, 0, and not all of them are looked at.
 fn mean_above(best: f32, mut values: impl ExactSizeIterator<Item = Option<f32>>, unseen: f32) -> f32 {
     let (mut sum, mut weights) = (0.0, 0.0);
     while values.len() > 0 {
@@ -164,17 +164,6 @@ fn mean_above(best: f32, mut values: impl ExactSizeIterator<Item = Option<f32>>,
         if sum + left < (best - ROUNDING) * (weights + left) {
             return 0.0;
         }
-    }
-    if weights > 0.0 { sum / weights } else { unseen }
-}
-
-/// Mean in which what is missing counts as `unseen`, but less than what is seen.
-fn mean(values: impl Iterator<Item = Option<f32>>, unseen: f32) -> f32 {
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for value in values {
-        let weight = if value.is_some() { 1.0 } else { UNSEEN_WEIGHT };
-        sum += weight * value.unwrap_or(unseen);
-        weights += weight;
     }
     if weights > 0.0 { sum / weights } else { unseen }
 }

@@ -31,16 +31,14 @@ static RIM: LazyLock<[[f32; 4]; POINTS]> = LazyLock::new(|| {
 static SCORER: LazyLock<Net> =
     LazyLock::new(|| Net::parse(include_str!("weights/scorer.txt")).expect("weights are checked by a test"));
 
-/// What is known of the finger's end, when the frame is a finger's: origin at its apex, unit its width.
-pub type HasTip = bool;
-
-/// How likely it is that `shape` outlines a nail: an estimate of its IoU with one (worth less upside down).
-pub fn score(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> f32 {
+/// How likely it is that `shape` outlines a nail: an estimate of its IoU with one (worth less upside down); `tip` where
+/// the frame is a finger's: origin at its apex, unit its width.
+pub fn score(patch: &Patch, shape: &OutlineShape, tip: bool) -> f32 {
     SCORER.answer(&inputs(patch, shape, tip))
 }
 
 /// The scorer's inputs.
-pub fn inputs(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> [f32; INPUTS] {
+pub fn inputs(patch: &Patch, shape: &OutlineShape, tip: bool) -> [f32; INPUTS] {
     let mut ring = [[[0.0f32; REACH.len()]; POINTS]; 3];
     let [x, y, length, width, taper] = [shape.x, shape.y, shape.length, shape.width, shape.taper].map(|v| v as f32);
     let half = 0.25 * (length + width);

@@ -35,6 +35,7 @@ use image::DynamicImage;
 use thiserror::Error;
 
 use super::{Axis, AxisUnknown, FoundAxis, Moments, Outline, Refusal, Refused, find_axes};
+use crate::job;
 use crate::photo::normalize::NailFrame;
 use crate::photograph::is_grey;
 use crate::vision::VisionError;
@@ -50,7 +51,7 @@ use shape::{OutlineShape, TAPER};
 #[doc(hidden)]
 pub mod training {
     pub use super::candidate::{Candidate, FEATURES, Features, Lead, follow_all, own_frame};
-    pub use super::evidence::{HasTip, INPUTS, inputs, score};
+    pub use super::evidence::{INPUTS, inputs, score};
     pub use super::net::{Net, softsign};
     pub use super::patch::{Extent, Frame, Patch};
     pub use super::picture::Levels;
@@ -82,7 +83,7 @@ pub struct DetectOptions {
     #[arg(
         long = "detect-size",
         value_name = "PX",
-        default_value_t = Self::default().working_size_px,
+        default_value_t = 1100,
         value_parser = clap::value_parser!(u32).range(64..=4096)
     )]
     pub working_size_px: u32,
@@ -94,19 +95,13 @@ pub struct DetectOptions {
     #[arg(skip)]
     pub min_doubtful: Option<f64>,
     /// Most places whose outline is refined.
-    #[arg(skip = Self::default().most_places)]
+    #[arg(skip = 16_usize)]
     pub most_places: usize,
 }
 
 impl Default for DetectOptions {
     fn default() -> Self {
-        Self {
-            detector: Detector::default(),
-            working_size_px: 1100,
-            min_confidence: None,
-            min_doubtful: None,
-            most_places: 16,
-        }
+        job::defaults()
     }
 }
 

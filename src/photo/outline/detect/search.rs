@@ -1,6 +1,6 @@
 //! Where a nail could be: templates that score well, in a finger's frame or anywhere on a close-up.
 
-use super::evidence::{HasTip, score};
+use super::evidence::score;
 use super::patch::{Extent, Frame, Patch};
 use super::picture::Levels;
 use super::shape::{OutlineShape, TAPER};
@@ -113,24 +113,33 @@ fn closed_edge(patch: &Patch, [x, y]: [f32; 2], rim: &[[[f32; 2]; 2]; 16]) -> f3
         .sum()
 }
 
-/// The best that are not near a better one, which `near` takes second.
-fn best_apart(mut all: Vec<Scored>, most: usize, near: impl Fn(&OutlineShape, &OutlineShape) -> bool) -> Vec<Scored> {
-    all.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut kept: Vec<Scored> = Vec::new();
-    for (s, value) in all {
+/// The best, by `value`, that are not near a better one, which `near` takes second.
+pub(super) fn best_apart<T>(
+    mut all: Vec<T>,
+    most: usize,
+    value: impl Fn(&T) -> f64,
+    near: impl Fn(&T, &T) -> bool,
+) -> Vec<T> {
+    all.sort_by(|a, b| value(b).total_cmp(&value(a)));
+    let mut kept: Vec<T> = Vec::new();
+    for one in all {
         if kept.len() == most {
             break;
         }
-        if !kept.iter().any(|(k, _)| near(&s, k)) {
-            kept.push((s, value));
+        if !kept.iter().any(|other| near(&one, other)) {
+            kept.push(one);
         }
     }
     kept
 }
 
+fn best_shapes(all: Vec<Scored>, most: usize, near: impl Fn(&OutlineShape, &OutlineShape) -> bool) -> Vec<Scored> {
+    best_apart(all, most, |one| f64::from(one.1), |one, other| near(&one.0, &other.0))
+}
+
 /// The best that are not near a better one (`apart` of the frame's unit, in any number of the shape).
 fn best_different(all: Vec<Scored>, most: usize, apart: f64) -> Vec<Scored> {
-    best_apart(all, most, |s, k| {
+    best_shapes(all, most, |s, k| {
         let d = [s.x - k.x, s.y - k.y, s.length - k.length, s.width - k.width, 0.4 * (s.turn - k.turn)];
         d.iter().all(|d| d.abs() < apart)
     })
@@ -138,7 +147,7 @@ fn best_different(all: Vec<Scored>, most: usize, apart: f64) -> Vec<Scored> {
 
 /// The same, where sizes differ much: distances relative to the better one's size.
 fn best_different_scaled(all: Vec<Scored>, most: usize) -> Vec<Scored> {
-    best_apart(all, most, |s, k| {
+    best_shapes(all, most, |s, k| {
         let apart = (s.x - k.x).hypot(s.y - k.y) / k.length;
         let same_way = (s.turn - k.turn).cos() > 0.0;
         apart < 0.2 && (s.length / k.length).ln().abs() < 0.3 && (s.width / k.width).ln().abs() < 0.3 && same_way
@@ -146,7 +155,7 @@ fn best_different_scaled(all: Vec<Scored>, most: usize) -> Vec<Scored> {
 }
 
 /// Climbs the score by ever smaller steps in each number of the shape.
-pub fn polish(patch: &Patch, (mut shape, mut value): Scored, tip: HasTip) -> Scored {
+pub fn polish(patch: &Patch, (mut shape, mut value): Scored, tip: bool) -> Scored {
     let size = 0.5 * (shape.length + shape.width);
     let mut step = 0.08;
     for _ in 0..3 {

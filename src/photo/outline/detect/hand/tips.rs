@@ -6,6 +6,7 @@
 
 use image::GrayImage;
 
+use super::super::search::best_apart;
 use crate::vision::borders;
 
 /// The end of a finger in pixels of the working picture.
@@ -52,24 +53,13 @@ pub(in super::super) fn tips(mask: &GrayImage) -> Vec<Tip> {
 }
 
 /// Keeps the best of `found` that do not stand for the same end, at most `most`.
-pub(in super::super) fn strongest(mut found: Vec<Tip>, most: usize) -> Vec<Tip> {
-    found.sort_by(|a, b| b.fit.total_cmp(&a.fit));
-    let mut kept: Vec<Tip> = Vec::new();
-    for tip in found {
-        if kept.len() == most {
-            break;
-        }
-        let same = kept.iter().any(|k| {
-            let apart = (k.apex[0] - tip.apex[0]).hypot(k.apex[1] - tip.apex[1]);
-            let turn = k.out[0] * tip.out[0] + k.out[1] * tip.out[1];
-            let ratio = (k.width / tip.width).max(tip.width / k.width);
-            apart < 0.45 * k.width.min(tip.width) && turn > 0.7 && ratio < 1.35
-        });
-        if !same {
-            kept.push(tip);
-        }
-    }
-    kept
+pub(in super::super) fn strongest(found: Vec<Tip>, most: usize) -> Vec<Tip> {
+    let is_same = |tip: &Tip, kept: &Tip| {
+        let turn = kept.out[0] * tip.out[0] + kept.out[1] * tip.out[1];
+        let ratio = (kept.width / tip.width).max(tip.width / kept.width);
+        apart(kept.apex, tip.apex) < 0.45 * kept.width.min(tip.width) && turn > 0.7 && ratio < 1.35
+    };
+    best_apart(found, most, |tip| tip.fit, is_same)
 }
 
 /// A closed contour resampled at one pixel of arc.
