@@ -8,17 +8,11 @@ use super::{VisionError, pixels, pixels_mut, size};
 /// A picture of red, green, blue samples at another size: shrunk by the mean over each pixel's area, enlarged linearly.
 ///
 /// `rgb` has 3 x width x height samples of `from`; the answer as many of `to`.
-///
-/// # Errors
-/// [`VisionError`].
 pub(crate) fn resized(rgb: &[u8], from: [usize; 2], to: [usize; 2]) -> Result<Vec<u8>, VisionError> {
     part_resized(rgb, from, [[0; 2], from], to)
 }
 
 /// As [`resized`], of a part: its corner and size.
-///
-/// # Errors
-/// [`VisionError`].
 pub(crate) fn part_resized(
     rgb: &[u8],
     from: [usize; 2],
@@ -66,9 +60,6 @@ fn shrunk(
 }
 
 /// Draws a closed line, smooth, `thickness` pixels wide, on red, green, blue samples; corners to an eighth of a pixel.
-///
-/// # Errors
-/// [`VisionError`].
 pub(crate) fn closed_line(
     rgb: &mut [u8],
     [width, height]: [usize; 2],

@@ -51,9 +51,6 @@ impl Network {
     }
 
     /// What the network answers.
-    ///
-    /// # Errors
-    /// [`VisionError`].
     pub(crate) fn answer(&self, planes: &Planes) -> Result<Planes, VisionError> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut net = idle.map_or_else(|| self.copy(), Ok)?;

@@ -117,8 +117,8 @@ impl Colours {
 
     /// The mean over a group's points.
     pub(in crate::nailvideo) fn mean(&self, group: &Group, frame_from_nail: &Affine) -> [f64; 3] {
-        let (points, motion) = (group.points(), frame_from_nail.0.map(|part| part as f32));
-        let sum = if self.holds_near && group.is_near() {
+        let (points, motion) = (&group.points[..], frame_from_nail.0.map(|part| part as f32));
+        let sum = if self.holds_near && group.is_near {
             Arch::new().dispatch(Sum { colours: self, points, motion })
         } else {
             let mut sum = [0.0_f32; 3];

@@ -43,5 +43,5 @@ pub(super) fn covered_by<'a>(
 
 /// How many points of a group are covered.
 pub(super) fn points_covered(covered: &Covered, group: &Group) -> usize {
-    group.points().iter().filter(|&&point| covered[cell_at(point)]).count()
+    group.points.iter().filter(|&&point| covered[cell_at(point)]).count()
 }

@@ -270,7 +270,7 @@ impl Sampler {
     /// NaN where too much of it is covered.
     fn skin_rgb(&self, colours: &Colours, frame_from_nail: &Affine) -> [f64; 3] {
         let covered = self.covered.as_ref().map_or(0, |covered| points_covered(covered, &self.skin));
-        let is_seen = covered as f64 <= MOST_HIDDEN * self.skin.points().len() as f64;
+        let is_seen = covered as f64 <= MOST_HIDDEN * self.skin.points.len() as f64;
         if is_seen { colours.mean(&self.skin, frame_from_nail) } else { [f64::NAN; 3] }
     }
 
@@ -285,9 +285,9 @@ impl Sampler {
         let (mut all, mut hidden) = (0, 0);
         let means = watched.region.groups.iter().zip(&watched.first).map(|(group, first)| {
             let rgb = colours.mean(group, frame_from_nail);
-            all += group.points().len();
+            all += group.points.len();
             if light.is_none_or(|light| self.is_strange(rgb, *first, light)) {
-                hidden += group.points().len();
+                hidden += group.points.len();
             } else if let Some(covered) = &self.covered {
                 hidden += points_covered(covered, group);
             }
@@ -362,7 +362,7 @@ fn shape(light: Light, region: &Region, colours: &Colours, frame_from_nail: &Aff
 fn mean_of<'a>(groups: impl Iterator<Item = (&'a Group, [f64; 3])>) -> [f64; 3] {
     let (mut sum, mut count) = ([0.0; 3], 0.0);
     for (group, rgb) in groups {
-        let weight = group.points().len() as f64;
+        let weight = group.points.len() as f64;
         count += weight;
         sum.iter_mut().zip(rgb).for_each(|(sum, part)| *sum += weight * part);
     }

@@ -19,24 +19,16 @@ pub(super) const NEAR: f64 = 1.3;
 /// Points that are judged together.
 #[derive(Debug, Clone)]
 pub(in crate::nailvideo) struct Group {
-    points: Vec<[f64; 2]>,
-    is_near: bool,
+    /// In half widths and half lengths.
+    pub(super) points: Vec<[f64; 2]>,
+    /// Whether all of them are near.
+    pub(super) is_near: bool,
 }
 
 impl Group {
     pub(super) fn new(points: Vec<[f64; 2]>) -> Self {
         let is_near = points.as_flattened().iter().all(|part| part.abs() <= NEAR);
         Self { points, is_near }
-    }
-
-    /// In half widths and half lengths.
-    pub(super) fn points(&self) -> &[[f64; 2]] {
-        &self.points
-    }
-
-    /// Whether all of them are near.
-    pub(super) fn is_near(&self) -> bool {
-        self.is_near
     }
 }
 
@@ -49,7 +41,7 @@ pub(in crate::nailvideo) struct Region {
 impl Region {
     /// From its first point to its last, in half widths.
     pub(in crate::nailvideo) fn width(&self) -> f64 {
-        let across = self.groups.iter().flat_map(Group::points).map(|[u, _]| *u);
+        let across = self.groups.iter().flat_map(|group| &group.points).map(|[u, _]| *u);
         across.clone().fold(f64::NEG_INFINITY, f64::max) - across.fold(f64::INFINITY, f64::min)
     }
 }

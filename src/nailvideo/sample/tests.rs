@@ -25,7 +25,7 @@ fn values(scene: &Scene, light: Light, shot: &Shot, motion: &Affine) -> Vec<Resu
 /// The exact mean of a function of the colour over a photodiode's disc.
 fn exact(scene: &Scene, index: usize, shot: &Shot) -> [f64; 3] {
     let region = &discs(&Positions::thesis(), [192.0, 230.4])[index];
-    let points = region.groups.iter().flat_map(Group::points);
+    let points = region.groups.iter().flat_map(|group| &group.points);
     let (mut sum, mut count) = ([0.0; 3], 0.0);
     for &point in points {
         let rgb = scene.colour(scene.frame_from_nail.of(point), shot.blanched, true);

@@ -30,9 +30,6 @@ const COLUMNS: [&str; 14] = [
 const MOST_CHARTS: usize = 8;
 
 /// Writes table and chart, and keeps the chart for the report.
-///
-/// # Errors
-/// [`WriteError`].
 pub(in crate::photo) fn write(figures: &mut ChannelFigures, staging: &Staging) -> Result<(), WriteError> {
     let table = csv_bytes(COLUMNS, figures.rows.iter().map(cells)).map_err(|why| staging.refused(TABLE, why))?;
     staging.write(TABLE, &table)?;

@@ -2,7 +2,7 @@
 //!
 //! Each is drawn once: its bytes go to its file, and are handed on to the report's page.
 
-use image::{GrayAlphaImage, imageops};
+use image::{ExtendedColorType, GrayAlphaImage, imageops};
 use rayon::prelude::*;
 
 use crate::figure::{self, Scale, Sheet, Stretch, Tile, TilePicture, grey_map};
@@ -87,22 +87,27 @@ impl Scratch {
         let Self { samples, png } = self;
         samples.clear();
         let levels = picture.levels.iter().copied();
-        match (depth, &picture.seen) {
-            (Depth::Eight, None) => samples.extend(levels.map(eight)),
-            (Depth::Sixteen, None) => samples.extend(levels.flat_map(u16::to_ne_bytes)),
-            (Depth::Eight, Some(seen)) => {
-                samples.extend(levels.zip(seen).flat_map(|(level, &seen)| [eight(level), if seen { 255 } else { 0 }]));
-            }
-            (Depth::Sixteen, Some(seen)) => samples.extend(levels.zip(seen).flat_map(|(level, &seen)| {
-                let ([a, b], opacity) = (level.to_ne_bytes(), if seen { 255 } else { 0 });
-                [a, b, opacity, opacity]
-            })),
-        }
+        let opacity = |&seen: &bool| if seen { 255 } else { 0 };
         let colour = match (depth, &picture.seen) {
-            (Depth::Eight, None) => image::ExtendedColorType::L8,
-            (Depth::Sixteen, None) => image::ExtendedColorType::L16,
-            (Depth::Eight, Some(_)) => image::ExtendedColorType::La8,
-            (Depth::Sixteen, Some(_)) => image::ExtendedColorType::La16,
+            (Depth::Eight, None) => {
+                samples.extend(levels.map(eight));
+                ExtendedColorType::L8
+            }
+            (Depth::Sixteen, None) => {
+                samples.extend(levels.flat_map(u16::to_ne_bytes));
+                ExtendedColorType::L16
+            }
+            (Depth::Eight, Some(seen)) => {
+                samples.extend(levels.zip(seen).flat_map(|(level, seen)| [eight(level), opacity(seen)]));
+                ExtendedColorType::La8
+            }
+            (Depth::Sixteen, Some(seen)) => {
+                samples.extend(levels.zip(seen).flat_map(|(level, seen)| {
+                    let ([a, b], opacity) = (level.to_ne_bytes(), opacity(seen));
+                    [a, b, opacity, opacity]
+                }));
+                ExtendedColorType::La16
+            }
         };
         png.clear();
         let size = picture.size as u32;

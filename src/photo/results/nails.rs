@@ -197,17 +197,11 @@ impl NailTable {
     }
 
     /// Writes `nails.csv`: every nail, used or not.
-    ///
-    /// # Errors
-    /// [`WriteError`].
     pub(in crate::photo) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
         staging.write(NAME, &csv_bytes(NAIL_COLUMNS, &self.rows).map_err(|why| staging.refused(NAME, why))?)
     }
 
     /// Draws the sheets of all nails and writes them.
-    ///
-    /// # Errors
-    /// [`WriteError`].
     pub(in crate::photo) fn draw_sheets(&self, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
         let draw = |NailSheet { pose, number, sheet }: &NailSheet| {
             DrawnSheet::new(sheet, &format!("figures/{pose}-nails-{number}.png"), staging)

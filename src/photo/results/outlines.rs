@@ -94,9 +94,6 @@ impl<'a> Mark<'a> {
 }
 
 /// A photograph with its nails, `reason` of those that are not used being set, and the places that were refused.
-///
-/// # Errors
-/// [`VisionError`].
 pub(in crate::photo) fn drawn_outlines(
     picture: &Photograph,
     nails: &[Nail],
@@ -196,9 +193,6 @@ fn legend([used, doubtful, refused]: [usize; 3]) -> Result<RgbImage, VisionError
 }
 
 /// Draws the sheets of these photographs, each with its name, and writes them.
-///
-/// # Errors
-/// [`WriteError`].
 pub(in crate::photo) fn draw_outlines(
     photographs: &[(String, DrawnPhotograph)],
     staging: &Staging,

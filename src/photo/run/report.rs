@@ -382,9 +382,6 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
 impl PhotosReport {
     /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in
     /// the same folder are not deleted, but nobody should take them for this run's: they become a warning.
-    ///
-    /// # Errors
-    /// [`WriteError`].
     pub(in crate::photo) fn write(
         &mut self,
         nails: &NailTable,

@@ -205,7 +205,7 @@ pub fn unlike(image: &DynamicImage, outlines: &[Option<&Outline>]) -> Result<Vec
 /// [`VisionError`].
 #[doc(hidden)]
 pub fn detect_by(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Detections, VisionError> {
-    let needed = options.min_confidence.unwrap_or(net.confident().max(DOUBTED));
+    let needed = options.min_confidence.unwrap_or(net.confident.max(DOUBTED));
     let shown = options.min_doubtful.unwrap_or(NET_SHOWS);
     Ok(sorted_out(by_net(net, image, shown, options)?, [needed, shown]))
 }
@@ -272,9 +272,6 @@ const SMALL_PX: f64 = 12.0;
 const AROUND: f64 = 1.3;
 
 /// By the network; each outline is refined at full resolution in the nail's own frame.
-///
-/// # Errors
-/// [`VisionError`].
 fn by_net(
     net: &NailNet,
     image: &DynamicImage,

@@ -68,9 +68,6 @@ impl View {
     }
 
     /// The components that the network's `answer` shows.
-    ///
-    /// # Errors
-    /// [`VisionError`].
     pub(super) fn components(&self, answer: &Planes) -> Result<Vec<Component>, VisionError> {
         let [channels, rows, columns] = answer.size;
         if channels != 2 {

@@ -61,8 +61,8 @@ pub struct NailNet {
     network: Network,
     /// Coefficients of the features, the constant first.
     calibration: [f64; FEATURES + 1],
-    /// The probability from which finds were right in 95 of 100.
-    confident: f64,
+    /// The probability from which finds were right in 95 of 100 photographs that chose nothing.
+    pub(super) confident: f64,
 }
 
 /// What was found.
@@ -119,11 +119,6 @@ impl NailNet {
             }
             _ => Err(VisionError::lacking("calibration", format!("not {} lines `name value`", FEATURES + 2))),
         }
-    }
-
-    /// The confidence from which finds were right in 95 of 100 photographs that chose nothing.
-    pub fn confident(&self) -> f64 {
-        self.confident
     }
 
     /// The nails of an upright photograph, none over another, the most probable first; and what isn't one after all.
