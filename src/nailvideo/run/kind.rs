@@ -9,7 +9,6 @@ use crate::nailvideo::options::{Inputs, NailVideoOptions, Outputs};
 use crate::nailvideo::run::job::run;
 use crate::nailvideo::run::plan::{plan, steps};
 use crate::stages::Step;
-use crate::table::TableFormat;
 
 const FRAMES: &str = "frames";
 const REPORT: &str = "report";
@@ -30,15 +29,8 @@ impl NailVideoJob {
             frames: demand.wants(FRAMES),
             figures: demand.wants(REPORT),
             report: false,
-            ending: ending(self.tables.format()),
+            ending: self.tables.named("csv", "parquet"),
         }
-    }
-}
-
-fn ending(format: TableFormat) -> &'static str {
-    match format {
-        TableFormat::Csv => "csv",
-        TableFormat::Parquet => "parquet",
     }
 }
 

@@ -87,11 +87,6 @@ impl Normalized {
         self.seen.as_ref().is_none_or(|seen| seen[at]).then(|| self.levels[at])
     }
 
-    /// How many pixels the photograph shows.
-    pub fn count_seen(&self) -> usize {
-        self.seen.as_ref().map_or(self.levels.len(), |seen| seen.iter().filter(|&&s| s).count())
-    }
-
     /// The share of the nail that is at full scale: of the ellipse within its box.
     pub(crate) fn at_full_scale(&self, margin: f64) -> f64 {
         // Of most pictures nothing is, which a look at the levels alone shows.
@@ -177,7 +172,7 @@ pub(crate) fn normalized_or_why(
         ));
     }
     let normalized = normalizer.normalize(image, frame, with);
-    if normalized.count_seen() == 0 {
+    if normalized.seen.as_ref().is_some_and(|seen| !seen.contains(&true)) {
         return Err("the photograph shows nothing of it (transparent or outside)".into());
     }
     Ok(normalized)

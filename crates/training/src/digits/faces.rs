@@ -74,13 +74,12 @@ impl Faces {
         files.sort_by_key(|path| path.file_name().map(ToOwned::to_owned));
         for path in files {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if STRANGE.iter().any(|strange| name.starts_with(strange)) {
+            let is_of = |names: &[&str]| names.iter().any(|begins| name.starts_with(begins));
+            if is_of(&STRANGE) || is_of(&HELD_OUT) != held_out {
                 continue;
             }
-            if HELD_OUT.iter().any(|held| name.starts_with(held)) != held_out {
-                continue;
-            }
-            let Ok(font) = FontVec::try_from_vec(read(&path)?) else { continue };
+            let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
+            let Ok(font) = FontVec::try_from_vec(bytes) else { continue };
             faces.extend(Face::of(&name, &font));
         }
         let mut families: Vec<Vec<Face>> = Vec::new();
@@ -109,10 +108,6 @@ impl Faces {
     pub(super) fn display(&self, rng: &mut impl Rng) -> &Display {
         &self.displays[rng.random_range(0..self.displays.len())]
     }
-}
-
-fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
-    std::fs::read(path).with_context(|| path.display().to_string())
 }
 
 fn list(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
