@@ -31,31 +31,27 @@ pub enum Cell {
 /// # Errors
 /// A file that can't be written.
 pub fn draw_grid(rows: &[Vec<Cell>], size: [u32; 2], png: &Path, svg: &Path) -> anyhow::Result<()> {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(1) as u32;
-    write_both(&Grid { rows, size }, (columns * size[0], rows.len().max(1) as u32 * size[1]), png, svg)
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    let pixels = (columns as u32 * size[0], rows.len().max(1) as u32 * size[1]);
+    write_both(&Grid { rows, columns }, pixels, png, svg)
 }
 
 struct Grid<'a> {
     rows: &'a [Vec<Cell>],
-    size: [u32; 2],
+    columns: usize,
 }
 
 impl Draw for Grid<'_> {
     fn draw<B: Backend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()> {
-        let mut below = area.clone();
-        for row in self.rows {
-            let (line, rest) = below.split_vertically(self.size[1]);
-            let mut beside = line;
-            for cell in row {
-                let (own, right) = beside.split_horizontally(self.size[0]);
+        let areas = area.split_evenly((self.rows.len(), self.columns));
+        for (row, areas) in self.rows.iter().zip(areas.chunks(self.columns)) {
+            for (cell, own) in row.iter().zip(areas) {
                 match cell {
                     Cell::Empty => {}
-                    Cell::Chart(chart) => chart.draw(&own, Scales::Linear)?,
-                    Cell::Key { words, colours } => key(&own, words, colours)?,
+                    Cell::Chart(chart) => chart.draw(own, Scales::Linear)?,
+                    Cell::Key { words, colours } => key(own, words, colours)?,
                 }
-                beside = right;
             }
-            below = rest;
         }
         Ok(())
     }
