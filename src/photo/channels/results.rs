@@ -9,29 +9,30 @@ use crate::table::csv_bytes;
 const TABLE: &str = "channels.csv";
 const PNG: &str = "figures/channels.png";
 const SVG: &str = "figures/channels.svg";
-/// The header of `channels.csv`.
-const COLUMNS: [&str; 14] = [
-    "pose",
-    "tone",
-    "channel",
-    "subjects",
-    "zones",
-    "white",
-    "red",
-    "contrast",
-    "low",
-    "high",
-    "relative",
-    "relative_low",
-    "relative_high",
-    "at_full_scale",
+/// The columns of `channels.csv`.
+const COLUMNS: [(&str, fn(&ChannelRow) -> String); 14] = [
+    ("pose", |row| row.pose.clone()),
+    ("tone", |row| row.tone.clone().unwrap_or_default()),
+    ("channel", |row| row.channel.name().to_owned()),
+    ("subjects", |row| row.subjects.to_string()),
+    ("zones", |row| if row.zones == ZonesOf::Own { "own" } else { "others" }.to_owned()),
+    ("white", |row| number(row.white)),
+    ("red", |row| number(row.red)),
+    ("contrast", |row| number(row.contrast.map(|of| of.mean))),
+    ("low", |row| number(row.contrast.and_then(|of| of.low))),
+    ("high", |row| number(row.contrast.and_then(|of| of.high))),
+    ("relative", |row| number(row.relative.map(|of| of.mean))),
+    ("relative_low", |row| number(row.relative.and_then(|of| of.low))),
+    ("relative_high", |row| number(row.relative.and_then(|of| of.high))),
+    ("at_full_scale", |row| number(row.at_full_scale)),
 ];
 /// Tones with a chart of their own; the table has them all.
 const MOST_CHARTS: usize = 8;
 
 /// Writes table and chart, and keeps the chart for the report.
 pub(in crate::photo) fn write(figures: &mut ChannelFigures, staging: &Staging) -> Result<(), WriteError> {
-    let table = csv_bytes(COLUMNS, figures.rows.iter().map(cells)).map_err(|why| staging.refused(TABLE, why))?;
+    let rows = figures.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
+    let table = csv_bytes(COLUMNS.map(|(name, _)| name), rows).map_err(|why| staging.refused(TABLE, why))?;
     staging.write(TABLE, &table)?;
     let poses = figures.rows.iter().filter(|row| row.tone.is_none()).count() / 3;
     let (png, svg) = (staging.place(PNG)?, staging.place(SVG)?);
@@ -40,33 +41,8 @@ pub(in crate::photo) fn write(figures: &mut ChannelFigures, staging: &Staging) -
     Ok(())
 }
 
-fn cells(row: &ChannelRow) -> [String; COLUMNS.len()] {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
-    let zones = match row.zones {
-        ZonesOf::Others => "others",
-        ZonesOf::Own => "own",
-    };
-    let [contrast, relative] = [row.contrast, row.relative].map(|of| {
-        let ends = of.map(|of| [of.low, of.high]).unwrap_or_default();
-        [of.map(|of| of.mean), ends[0], ends[1]].map(number)
-    });
-    let [[contrast, low, high], [relative, relative_low, relative_high]] = [contrast, relative];
-    [
-        row.pose.clone(),
-        row.tone.clone().unwrap_or_default(),
-        row.channel.name().to_owned(),
-        row.subjects.to_string(),
-        zones.to_owned(),
-        number(row.white),
-        number(row.red),
-        contrast,
-        low,
-        high,
-        relative,
-        relative_low,
-        relative_high,
-        number(row.at_full_scale),
-    ]
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:.6}"))
 }
 
 /// Pixels of a chart over so many poses.

@@ -15,17 +15,26 @@ const CLAIM: &str = "The thesis isolates the green component because \u{201c}the
     contrast divided by the mean of both zones. Shade and lunula are light and dark in every channel: where relative \
     contrast is the same in all three, that is all the zones show.";
 
-const HEADER: [&str; 10] = [
-    "pose",
-    "tone",
-    "channel",
-    "subjects",
-    "white, %",
-    "red, %",
-    "contrast, %",
-    "95 % interval, %",
-    "relative contrast, %",
-    "95 % interval, %",
+/// The columns of the table of channels, and of that of their differences.
+const COLUMNS: [(&str, fn(&ChannelRow) -> String); 10] = [
+    ("pose", |row| row.pose.clone()),
+    ("tone", |row| row.tone.clone().unwrap_or_default()),
+    ("channel", |row| row.channel.name().to_owned()),
+    ("subjects", |row| row.subjects.to_string()),
+    ("white, %", |row| percent(row.white)),
+    ("red, %", |row| percent(row.red)),
+    ("contrast, %", |row| percent(row.contrast.map(|contrast| contrast.mean))),
+    ("95 % interval, %", |row| interval(row.contrast)),
+    ("relative contrast, %", |row| percent(row.relative.map(|relative| relative.mean))),
+    ("95 % interval, %", |row| interval(row.relative)),
+];
+const OF_DIFFERENCES: [(&str, fn(&ChannelDifference) -> String); 6] = [
+    ("pose", |row| row.pose.clone()),
+    ("tone", |row| row.tone.clone().unwrap_or_default()),
+    ("contrast of", |row| row.of.name().to_owned()),
+    ("less that of", |row| row.less.name().to_owned()),
+    ("difference, %", |row| percent(row.difference.map(|difference| difference.mean))),
+    ("95 % interval, %", |row| interval(row.difference)),
 ];
 
 /// What the paired differences say of a pose.
@@ -47,40 +56,15 @@ pub(in crate::photo) fn add_section(page: &mut Page, figures: &ChannelFigures) {
     page.paragraph(CLAIM);
     page.list(&findings(figures));
     page.png(&figures.chart, "Contrast between white and red zones by pose and channel");
-    let rows: Vec<Vec<String>> = figures.rows.iter().map(cells).collect();
-    page.table(&HEADER, &rows, |_| false);
+    let rows: Vec<Vec<String>> = figures.rows.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)).to_vec()).collect();
+    page.table(&COLUMNS.map(|(name, _)| name), &rows, |_| false);
     page.paragraph(
         "All but relative contrast is in % of full scale; rows without a tone are of all subjects. Differences, \
          subject by subject:",
     );
-    let rows: Vec<Vec<String>> = figures.differences.iter().map(cells_of_difference).collect();
-    page.table(&["pose", "tone", "contrast of", "less that of", "difference, %", "95 % interval, %"], &rows, |_| false);
-}
-
-fn cells(row: &ChannelRow) -> Vec<String> {
-    vec![
-        row.pose.clone(),
-        row.tone.clone().unwrap_or_default(),
-        row.channel.name().to_owned(),
-        row.subjects.to_string(),
-        percent(row.white),
-        percent(row.red),
-        percent(row.contrast.map(|contrast| contrast.mean)),
-        interval(row.contrast),
-        percent(row.relative.map(|relative| relative.mean)),
-        interval(row.relative),
-    ]
-}
-
-fn cells_of_difference(row: &ChannelDifference) -> Vec<String> {
-    vec![
-        row.pose.clone(),
-        row.tone.clone().unwrap_or_default(),
-        row.of.name().to_owned(),
-        row.less.name().to_owned(),
-        percent(row.difference.map(|difference| difference.mean)),
-        interval(row.difference),
-    ]
+    let rows: Vec<Vec<String>> =
+        figures.differences.iter().map(|row| OF_DIFFERENCES.map(|(_, cell)| cell(row)).to_vec()).collect();
+    page.table(&OF_DIFFERENCES.map(|(name, _)| name), &rows, |_| false);
 }
 
 fn percent(value: Option<f64>) -> String {

@@ -11,5 +11,5 @@ pub(super) use draw::{DrawnPose, DrawnSheet, draw_sheets, thumbnail, write_norma
 pub(crate) use maps::write_npy;
 pub(super) use maps::{write_maps, write_pose, write_sums};
 pub use nails::NailRow;
-pub(super) use nails::{NAIL_COLUMNS, NailTable};
+pub(super) use nails::{NailTable, nail_columns};
 pub(super) use outlines::{DrawnPhotograph, MOST_DRAWN, draw_outlines, drawn_outlines};

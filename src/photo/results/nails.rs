@@ -16,7 +16,7 @@ use crate::photo::hues::Hues;
 use crate::photo::normalize::{NailFrame, Survey};
 use crate::photo::outline::{Axis, Nail, Source};
 use crate::photo::pose::rank;
-use crate::photo::set::PhotoSet;
+use crate::photo::set::{Photo, PhotoSet};
 use crate::table::csv_bytes;
 
 /// One nail of the result: a row of `nails.csv`.
@@ -72,42 +72,31 @@ impl NailRow {
 }
 
 const NAME: &str = "nails.csv";
-/// The header of `nails.csv`.
-pub(in crate::photo) const NAIL_COLUMNS: [&str; 13] = [
-    "file",
-    "nail",
-    "subject",
-    "pose",
-    "outline",
-    "confidence",
-    "center_x_px",
-    "center_y_px",
-    "length_px",
-    "width_px",
-    "axis_deg",
-    "used",
-    "reason",
+/// A column of `nails.csv`: its name and its cells, empty where nothing is known.
+type NailColumn = (&'static str, fn(&NailRow, &Photo) -> String);
+const COLUMNS: [NailColumn; 13] = [
+    ("file", |_, photo| photo.file.clone()),
+    ("nail", |row, _| row.number.to_string()),
+    ("subject", |_, photo| photo.subject.clone()),
+    ("pose", |_, photo| photo.pose.clone()),
+    ("outline", |row, _| row.source.name().to_owned()),
+    ("confidence", |row, _| number(row.confidence)),
+    ("center_x_px", |row, _| number(row.frame.map(|f| f.center_px[0]))),
+    ("center_y_px", |row, _| number(row.frame.map(|f| f.center_px[1]))),
+    ("length_px", |row, _| number(row.frame.map(|f| f.length_px))),
+    ("width_px", |row, _| number(row.frame.map(|f| f.width_px))),
+    ("axis_deg", |row, _| number(row.axis.map(Axis::clockwise_deg))),
+    ("used", |row, _| row.normalized.is_some().to_string()),
+    ("reason", |row, _| row.reason.clone()),
 ];
 
-/// A row of `nails.csv`: an empty cell where nothing is known.
-fn cells(row: &NailRow, set: &PhotoSet) -> [String; NAIL_COLUMNS.len()] {
-    let photo = &set.photos[row.photo];
-    let number = |value: Option<f64>, digits: usize| value.map_or_else(String::new, |v| format!("{v:.digits$}"));
-    [
-        photo.file.clone(),
-        row.number.to_string(),
-        photo.subject.clone(),
-        photo.pose.clone(),
-        row.source.name().to_owned(),
-        number(row.confidence, 3),
-        number(row.frame.map(|f| f.center_px[0]), 3),
-        number(row.frame.map(|f| f.center_px[1]), 3),
-        number(row.frame.map(|f| f.length_px), 3),
-        number(row.frame.map(|f| f.width_px), 3),
-        number(row.axis.map(|a| a.clockwise_deg()), 3),
-        row.normalized.is_some().to_string(),
-        row.reason.clone(),
-    ]
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:.3}"))
+}
+
+/// The header of `nails.csv`.
+pub(in crate::photo) fn nail_columns() -> [&'static str; COLUMNS.len()] {
+    COLUMNS.map(|(name, _)| name)
 }
 
 /// Some columns of it: of which photograph and whose a nail is, where it lies, and whether it was used.
@@ -158,7 +147,8 @@ impl NailTable {
                 sheet.tiles.push(Tile { caption, picture: TilePicture::Grey(picture), png: None });
             }
         }
-        Self { rows: rows.iter().map(|row| cells(row, set).to_vec()).collect(), sheets }
+        let cells = |row: &NailRow| COLUMNS.map(|(_, cell)| cell(row, &set.photos[row.photo])).to_vec();
+        Self { rows: rows.iter().map(cells).collect(), sheets }
     }
 
     /// From the tables of parts, in the order that one run would have given: by pose, subject, file, nail.
@@ -198,7 +188,7 @@ impl NailTable {
 
     /// Writes `nails.csv`: every nail, used or not.
     pub(in crate::photo) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
-        staging.write(NAME, &csv_bytes(NAIL_COLUMNS, &self.rows).map_err(|why| staging.refused(NAME, why))?)
+        staging.write(NAME, &csv_bytes(nail_columns(), &self.rows).map_err(|why| staging.refused(NAME, why))?)
     }
 
     /// Draws the sheets of all nails and writes them.
@@ -226,8 +216,8 @@ impl NailTable {
 fn read(file: &Path) -> Result<Vec<Vec<String>>, MergeError> {
     let wrong = |why: String| MergeError::Nails { file: file.to_owned(), why };
     let mut table = csv::Reader::from_reader(input::open(file).map_err(|e| wrong(e.to_string()))?);
-    if table.headers().map_err(|e| wrong(e.to_string()))?.iter().ne(NAIL_COLUMNS) {
-        return Err(wrong(format!("its columns are not {}", NAIL_COLUMNS.join(","))));
+    if table.headers().map_err(|e| wrong(e.to_string()))?.iter().ne(nail_columns()) {
+        return Err(wrong(format!("its columns are not {}", nail_columns().join(","))));
     }
     let cells = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
     table.records().map(|record| record.map(cells).map_err(|e| wrong(e.to_string()))).collect()

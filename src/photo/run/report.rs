@@ -18,7 +18,7 @@ use crate::photo::normalize::{MOST_AT_FULL_SCALE, Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
-use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
+use crate::photo::results::{DrawnSheet, NailRow, NailTable, nail_columns};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Partials, Sums};
 use crate::photograph::Profile;
@@ -421,7 +421,7 @@ impl PhotosReport {
         }
         let used = (0..nails.rows.len()).filter(|&row| nails.is_used(row)).count();
         page.heading(&format!("Nails: {} listed, {used} used", nails.rows.len()));
-        page.table(&NAIL_COLUMNS, &nails.rows, |row| !nails.is_used(row));
+        page.table(&nail_columns(), &nails.rows, |row| !nails.is_used(row));
         if !self.failed.is_empty() {
             page.heading("Photographs that gave nothing");
             page.list(&self.failed);
