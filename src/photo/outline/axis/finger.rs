@@ -149,8 +149,8 @@ const AT_A_TIME: usize = 4;
 /// Rounding of a mean of some dozen values, and much more.
 const ROUNDING: f32 = 1e-4;
 
-/// The mean of values of 0 to 1, in which what is missing counts as `unseen`, but less than what is seen. Where it can't
-/// be above `best`, 0, and not all of them are looked at.
+/// The mean of values of 0 to 1, in which what is missing counts as `unseen`, but less than what is seen. Where it
+/// can't be above `best`, 0, and not all of them are looked at.
 fn mean_above(best: f32, mut values: impl ExactSizeIterator<Item = Option<f32>>, unseen: f32) -> f32 {
     let (mut sum, mut weights) = (0.0, 0.0);
     while values.len() > 0 {
