@@ -271,9 +271,10 @@ pub trait Job: Send + Sync + Sized + 'static {
 }
 
 /// Any job's checked stage, as the planner holds it: [`Job`] without its types.
-#[allow(missing_docs, reason = "as those of Job")]
 pub trait Prepared: Send + Sync {
+    /// [`Job::demand`].
     fn demand(&self, role: &str, own: &Demand) -> Demand;
+    /// [`Job::depends_on`].
     fn depends_on(&self, demand: &Demand) -> serde_json::Value;
     /// What does one task.
     fn maker(self: Arc<Self>, keys: &Keys, demand: &Demand) -> Arc<dyn Maker>;
@@ -282,10 +283,15 @@ pub trait Prepared: Send + Sync {
     /// # Errors
     /// An input that exists and can't be read.
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String>;
+    /// [`Job::facts`].
     fn facts(&self, inputs: &[Foreseen], demand: &Demand) -> Facts;
+    /// [`Job::cost`].
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64);
+    /// [`Job::beside`].
     fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)>;
+    /// [`Job::each`].
     fn each(&self) -> &'static [&'static str];
+    /// [`Job::file`].
     fn file(&self, part: &Part) -> &'static str;
 }
 

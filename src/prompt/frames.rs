@@ -75,24 +75,28 @@ pub(crate) struct Frame {
 
 /// How the frames were.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[allow(missing_docs, reason = "a comment is of all fields until the next one")]
 pub struct FrameFigures {
-    /// Frames that were shown, and those that a screen had time for and that were not.
+    /// Frames that were shown.
     pub shown: u64,
+    /// Those that a screen had time for and that were not.
     pub dropped: u64,
-    /// How far frames were off at their own time, pixels: half of them, 99 of 100, all.
+    /// How far half of the frames were off at their own time at most, pixels.
     pub off_px_p50: Option<f64>,
+    /// 99 of 100 of them.
     pub off_px_p99: Option<f64>,
+    /// All.
     pub off_px_max: Option<f64>,
     /// Frames that showed a ring or finger where nothing was prompted, or none where something was.
     pub mistaken: u64,
     /// The largest uncertainty of a frame's time, seconds.
     pub uncertainty_max_s: Option<f64>,
-    /// From frame to frame, seconds.
+    /// From frame to frame, in half of them at most, seconds.
     pub interval_p50_s: Option<f64>,
+    /// In 99 of 100.
     pub interval_p99_s: Option<f64>,
-    /// From a force that was measured to the frame that shows it for the first time, seconds.
+    /// From a force that was measured to the frame that shows it for the first time, in half of them at most, seconds.
     pub force_to_frame_p50_s: Option<f64>,
+    /// In 95 of 100.
     pub force_to_frame_p95_s: Option<f64>,
 }
 

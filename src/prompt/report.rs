@@ -16,7 +16,6 @@ pub type PromptReport = Report<PromptFigures>;
 
 /// The figures of a prompted session.
 #[derive(Debug, Clone, Serialize)]
-#[allow(missing_docs, reason = "a comment is of all fields until the next one")]
 pub struct PromptFigures {
     /// The recording.
     pub out: PathBuf,
@@ -31,12 +30,15 @@ pub struct PromptFigures {
     /// How evenly the recorded rows cover the cone: `cone_coverage` of the recording, the finger in the air below
     /// `rest_n`.
     pub coverage: ConeCoverage,
+    /// The least force of a finger that touches, newtons.
     pub rest_n: f64,
-    /// What would fill what is missing, and the protocol's file of it.
+    /// What would fill what is missing.
     pub extra: Option<Extra>,
+    /// The protocol's file of it.
     pub extra_file: Option<PathBuf>,
-    /// What a page has shown, and the table of it.
+    /// What a page has shown.
     pub frames: Option<FrameFigures>,
+    /// The table of it.
     pub frames_file: Option<PathBuf>,
 }
 
