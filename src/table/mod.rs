@@ -302,6 +302,9 @@ impl TableWriter {
     }
 }
 
+/// A column of a table that is made of rows `R`: its name, and its cell of a row.
+pub(crate) type TextColumn<R> = (&'static str, fn(&R) -> String);
+
 /// A small CSV table as bytes; what is wrong with it, in words.
 pub(crate) fn csv_bytes<Row: IntoIterator<Item: AsRef<[u8]>>>(
     header: impl IntoIterator<Item: AsRef<[u8]>>,

@@ -4,13 +4,13 @@ use super::compare::{ChannelFigures, ChannelRow, ZonesOf};
 use crate::figure::{Bar, Chart, Item, draw_charts};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Channel;
-use crate::table::csv_bytes;
+use crate::table::{TextColumn, csv_bytes};
 
 const TABLE: &str = "channels.csv";
 const PNG: &str = "figures/channels.png";
 const SVG: &str = "figures/channels.svg";
 /// The columns of `channels.csv`.
-const COLUMNS: [(&str, fn(&ChannelRow) -> String); 14] = [
+const COLUMNS: [TextColumn<ChannelRow>; 14] = [
     ("pose", |row| row.pose.clone()),
     ("tone", |row| row.tone.clone().unwrap_or_default()),
     ("channel", |row| row.channel.name().to_owned()),

@@ -4,6 +4,7 @@ use super::compare::{ChannelDifference, ChannelFigures, ChannelRow};
 use super::interval::Estimate;
 use crate::figure::Page;
 use crate::photo::normalize::Channel;
+use crate::table::TextColumn;
 
 const CLAIM: &str = "The thesis isolates the green component because \u{201c}the red and white areas of the \
     fingernail differ mainly in their green component, while the red and blue components are almost identical\u{201d} \
@@ -16,7 +17,7 @@ const CLAIM: &str = "The thesis isolates the green component because \u{201c}the
     contrast is the same in all three, that is all the zones show.";
 
 /// The columns of the table of channels, and of that of their differences.
-const COLUMNS: [(&str, fn(&ChannelRow) -> String); 10] = [
+const COLUMNS: [TextColumn<ChannelRow>; 10] = [
     ("pose", |row| row.pose.clone()),
     ("tone", |row| row.tone.clone().unwrap_or_default()),
     ("channel", |row| row.channel.name().to_owned()),
@@ -28,7 +29,7 @@ const COLUMNS: [(&str, fn(&ChannelRow) -> String); 10] = [
     ("relative contrast, %", |row| percent(row.relative.map(|relative| relative.mean))),
     ("95 % interval, %", |row| interval(row.relative)),
 ];
-const OF_DIFFERENCES: [(&str, fn(&ChannelDifference) -> String); 6] = [
+const OF_DIFFERENCES: [TextColumn<ChannelDifference>; 6] = [
     ("pose", |row| row.pose.clone()),
     ("tone", |row| row.tone.clone().unwrap_or_default()),
     ("contrast of", |row| row.of.name().to_owned()),
