@@ -37,8 +37,10 @@ fn a_step_begins_at_rest_and_its_rows_stand_at_multiples() {
 #[test]
 fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
     let dir = Dir::new();
-    for request in ["--pf2 ramp:0..8000@0..1 --until 2 --out {out}/t.csv", "--static 0..9000/500 --out {out}/t.csv"] {
-        assert_eq!(dir.on_any_threads(&format!("simulate {request}")).len(), 3, "{request}");
+    for (request, files) in
+        [("--pf2 ramp:0..8000@0..1 --until 2 --out {out}/t.csv", 3), ("--static 0..9000/500 --out {out}/s.csv", 6)]
+    {
+        assert_eq!(dir.on_any_threads(&format!("simulate {request}")).len(), files, "{request}");
     }
 }
 
