@@ -92,6 +92,16 @@ fn loads_that_never_act_or_suck_are_named() {
         .says("--pf1 step:-2000@0.55..0.58 goes below 0: pressing is positive");
     said("--pf2 sine:0+100@1 --until 2").says("--pf2 sine:0+100@1 goes below 0");
     said("--loads suck.csv --until 2").says("suck.csv: pf1_Pa goes below 0");
+    // Pressures in kPa: both, one of them, those of a table, those at rest.
+    said("--pf1 step:5@1..9 --until 2").says("no pressure of --pf1 is greater than 5 Pa, which hardly presses");
+    said("--pf1 step:5000@1..9 --pf2 0.5 --until 2")
+        .says("no pressure of --pf2 is greater than 0.5 Pa")
+        .never_says("--pf1");
+    dir.write("kpa.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n0.5,5,0\n1,0,0\n");
+    said("--loads kpa.csv --until 2").says("kpa.csv: no pressure of pf1_Pa and pf2_Pa is greater than 5 Pa");
+    run(&dir, "--static 0..9/3 --out s.csv --no-figures")
+        .expect(0)
+        .says("no pressure of --static is greater than 9 Pa");
     // Beats a minute, and a stiffness in N/mm.
     said("--ph sine:10000+2000@72 --until 2").says("repeats 72 times a second").says("They are @1.200");
     said("--pf1 step:5000@1..9 --set k_C1_N_per_m=100 --until 2").says("times its nominal diameter: is a stiffness");
@@ -115,7 +125,11 @@ fn loads_that_never_act_or_suck_are_named() {
         "--pf1 ramp:5000..0@0..1",
     ] {
         let answer = said(&format!("{fine} --until 2"));
-        assert!(!["constant", "below 0", "times"].iter().any(|word| answer.stderr.contains(word)), "{}", answer.stderr);
+        assert!(
+            !["constant", "below 0", "times", "hardly"].iter().any(|word| answer.stderr.contains(word)),
+            "{}",
+            answer.stderr
+        );
     }
 }
 

@@ -12,14 +12,13 @@ use crate::log::{LogReading, doubts};
 /// Pressures that are nowhere greater hardly press on vessels of kilopascals, and are in another unit (assumed).
 const HARDLY_PA: f64 = 200.0;
 
-/// What to say of a recording's pressures, Pa, that are all but nothing.
-pub(in crate::hemodynamics) fn hardly_pressed(columns: &[&[f64]]) -> Option<String> {
+/// What to say of pressures `of` something, Pa, that are all but nothing.
+pub(in crate::hemodynamics) fn hardly_pressed(of: &str, columns: &[&[f64]]) -> Option<String> {
     let largest = columns.concat().into_iter().map(f64::abs).filter(|pa| pa.is_finite()).fold(0.0, f64::max);
     (largest > 0.0 && largest < HARDLY_PA).then(|| {
         format!(
-            "{} are nowhere greater than {largest} Pa, which hardly presses on a vessel: are they in kPa or mmHg? \
-             Write them in Pa",
-            PRESSED.join(" and ")
+            "no pressure of {of} is greater than {largest} Pa, which hardly presses on a vessel: are they in kPa or \
+             mmHg? Write them in Pa"
         )
     })
 }
@@ -89,15 +88,16 @@ impl LoadOptions {
             // Of a table that a person wrote the rows are as far apart as they please.
             let logged = doubts::even_step(times_s).filter(|_| !rows.is_log());
             let time = logged.and_then(|_| doubts::time(times_s).or_else(|| doubts::gap(times_s)));
-            let doubted: Vec<String> = hardly_pressed(&pressed).into_iter().chain(time).collect();
+            let doubted: Vec<String> =
+                hardly_pressed(&PRESSED.join(" and "), &pressed).into_iter().chain(time).collect();
             warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed), &doubted].concat());
             notes = placed(&rows.notes());
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }
         let loads = loads.with_blood(&self.blood.ph, &self.blood.pl);
         if file.is_none() {
-            let given = [&self.pf1, &self.pf2].map(|load| load.as_ref().map_or(Vec::new(), values));
-            warnings.extend(hardly_pressed(&given.each_ref().map(Vec::as_slice)));
+            let given = [("--pf1", &self.pf1), ("--pf2", &self.pf2)];
+            warnings.extend(given.iter().filter_map(|(of, load)| hardly_pressed(of, &[&values(load.as_ref()?)])));
         }
         let greatest = |load: &Load| values(load).into_iter().fold(f64::NEG_INFINITY, f64::max);
         warnings.extend(hardly_flows([&loads.upstream, &loads.downstream].map(greatest)));

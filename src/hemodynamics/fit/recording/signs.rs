@@ -42,7 +42,8 @@ pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String
 pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
     let ranges = columns.map(|(_, pressures_pa)| without_spikes(pressures_pa));
     let largest = ranges.as_flattened().iter().fold(0.0, |largest: f64, pa| largest.max(pa.abs()));
-    let hardly = hardly_pressed(&columns.map(|(_, pressures_pa)| pressures_pa));
+    let hardly =
+        hardly_pressed(&columns.map(|(name, _)| name).join(" and "), &columns.map(|(_, pressures_pa)| pressures_pa));
     let one = |((name, pressures_pa), [least, greatest]): ((&str, &[f64]), [f64; 2])| {
         let sucked = pressures_pa.iter().filter(|pa| **pa < 0.0).count();
         let pressed = pressures_pa.iter().filter(|pa| **pa > 0.0).count();
