@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::table::{Rows, read};
 use super::{Item, Missing, Origin, Relation, World, holds, plain};
 use crate::job::Keys;
-use crate::pipeline::items::pattern::{Disk, Pattern};
+use crate::pipeline::items::pattern::{Disk, Match, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
 use crate::toml_file::Fault;
 use crate::words::instead;
@@ -23,6 +23,8 @@ pub(in crate::pipeline) struct InputItems {
     pub(in crate::pipeline) rows: Vec<(Keys, String)>,
     /// Files that a pattern leaves out only for the case of letters.
     pub(in crate::pipeline) in_other_case: Vec<String>,
+    /// What it leaves out for a name that is not UTF-8.
+    pub(in crate::pipeline) not_utf8: Vec<String>,
 }
 
 impl InputItems {
@@ -84,16 +86,16 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         return Err(fault(what));
     }
     let mut items = Vec::with_capacity(found.matches.len());
-    for found in found.matches {
+    for Match { path, keys } in found.matches {
         let origin = match inside {
-            Some(_) => Origin::Generated(found.path.clone()),
-            None => Origin::Given { path: world.at(&found.path), name: found.path.clone() },
+            Some(_) => Origin::Generated(path.clone()),
+            None => Origin::Given { path: world.at(&path), name: path.clone() },
         };
-        if inside.is_some() && world.maker(&found.path).is_none() {
-            let what = format!("{{phantom}}/{} is made by several tasks; name folders within it", found.path);
+        if inside.is_some() && world.maker(&path).is_none() {
+            let what = format!("{{phantom}}/{path} is made by several tasks; name folders within it");
             return Err(fault(what));
         }
-        items.push(Item { columns: found.keys.clone(), keys: found.keys, origin, place: found.path });
+        items.push(Item { columns: keys.clone(), keys, origin, place: path });
     }
     check_filter(spec, &input.filter, &pattern.names, |key| {
         items.iter().filter_map(|item| item.columns.get(key)).collect()
@@ -102,7 +104,8 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     if relation.items.is_empty() {
         return Err(nothing_left(spec, input));
     }
-    Ok(InputItems { relations: vec![relation], columns: pattern.names, rows: Vec::new(), in_other_case })
+    let (columns, not_utf8) = (pattern.names, found.not_utf8);
+    Ok(InputItems { relations: vec![relation], columns, rows: Vec::new(), in_other_case, not_utf8 })
 }
 
 fn of_table(
@@ -188,8 +191,9 @@ fn of_table(
             relation
         })
         .collect();
-    let all = (0..rows.rows.len()).map(|row| (rows.known(row, 0..known.len()), rows.rows[row].1.clone()));
-    Ok(InputItems { relations, columns: rows.columns.clone(), rows: all.collect(), in_other_case: Vec::new() })
+    let all = (0..rows.rows.len()).map(|row| (rows.known(row, 0..known.len()), rows.rows[row].1.clone())).collect();
+    let columns = rows.columns.clone();
+    Ok(InputItems { relations, columns, rows: all, in_other_case: Vec::new(), not_utf8: Vec::new() })
 }
 
 /// Where the file of a cell stands.

@@ -1,5 +1,5 @@
 //! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, or
-//! that lacks it, and files whose names fit a pattern but for the case of letters. And what is done apart for one:
+//! that lacks it, and files whose names fit a pattern but for the case of letters, or are not UTF-8. And what is done apart for one:
 //! values of a table or of files' names, of a key that a stage is done for each of, that differ in case and spaces
 //! only.
 //!
@@ -91,17 +91,26 @@ pub(super) fn empty_keys(spec: &Spec, inputs: &[Option<InputItems>]) -> Vec<Stri
     warnings.into_iter().collect()
 }
 
-fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Option<String> {
+fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Vec<String> {
     let left: Vec<&str> =
         items.in_other_case.iter().map(String::as_str).filter(|path| !taken.contains(*path)).collect();
-    (!left.is_empty()).then(|| {
+    let other_case = (!left.is_empty()).then(|| {
         format!(
             "`{pattern}` leaves out {} file(s) whose names differ only in the case of letters: {}; rename them, or \
              write such a letter as [cC]",
             left.len(),
             listed(&left)
         )
-    })
+    });
+    let unnamed: Vec<&str> = items.not_utf8.iter().map(String::as_str).collect();
+    let not_utf8 = (!unnamed.is_empty()).then(|| {
+        format!(
+            "`{pattern}` leaves out {} name(s) that are not UTF-8: {}; rename them",
+            unnamed.len(),
+            listed(&unnamed)
+        )
+    });
+    other_case.into_iter().chain(not_utf8).collect()
 }
 
 fn of_table(

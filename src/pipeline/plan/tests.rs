@@ -369,6 +369,13 @@ fn files_that_only_the_case_of_letters_leaves_out_are_warned_of() {
     assert_eq!(bench.plan(&all).warnings, [""; 0]);
     let others = format!("[inputs.more]\nfiles = \"l/{{n}}.C*\"\n{}", one.replace("\"logs\"", "[\"logs\", \"more\"]"));
     assert_eq!(bench.plan(&others).warnings, [""; 0], "another input has them");
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        std::fs::write(bench.0.path().join(std::ffi::OsStr::from_bytes(b"l/M\xfcller.csv")), "5").unwrap();
+        let what = "`l/{n}.[cC][sS][vV]` leaves out 1 name(s) that are not UTF-8: l/M\u{fffd}ller.csv; rename them";
+        assert_eq!(bench.plan(&all).warnings, [what]);
+    }
 }
 
 /// Faults of the study with some files changed.

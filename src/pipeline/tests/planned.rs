@@ -153,7 +153,7 @@ pub(in crate::pipeline) fn folder_of(files: &[(&str, &str)]) -> tempfile::TempDi
 }
 
 /// A folder with files, in which a pipeline is planned.
-pub(in crate::pipeline) struct Bench(tempfile::TempDir);
+pub(in crate::pipeline) struct Bench(pub(in crate::pipeline) tempfile::TempDir);
 
 impl Bench {
     pub(in crate::pipeline) fn new(files: &[(&str, &str)]) -> Self {

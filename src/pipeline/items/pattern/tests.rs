@@ -114,3 +114,30 @@ fn the_disk_is_read_like_a_list_and_results_are_never_inputs() {
     let there = full.find(&Disk { base: ".".into(), out: None });
     assert_eq!(there.matches[0].path, format!("{}/a/x.csv", dir.path().display()));
 }
+
+#[cfg(unix)]
+#[test]
+fn names_that_are_not_utf8_are_left_out_and_listed_where_the_pattern_fits_them() {
+    use std::os::unix::ffi::OsStrExt;
+    let dir = folder_of(&[("a/x.csv", ""), ("a/z.txt", "")]);
+    for name in [&b"a/M\xfcller.csv"[..], b"a/M\xfcller.txt", b"\xe4/y.csv"] {
+        let path = dir.path().join(std::ffi::OsStr::from_bytes(name));
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, "").unwrap();
+    }
+    let disk = Disk { base: dir.path().to_owned(), out: None };
+    for (pattern, left_out) in [
+        ("{day}/{n}.csv", &["a/M\u{fffd}ller.csv", "\u{fffd}"][..]),
+        ("**/{n}.csv", &["a/M\u{fffd}ller.csv", "\u{fffd}"]),
+        ("a/{n}.csv", &["a/M\u{fffd}ller.csv"]),
+        ("a/x*.csv", &[]),
+    ] {
+        let found = Pattern::parse(pattern).unwrap().find(&disk);
+        let paths: Vec<&str> = found.matches.iter().map(|one| one.path.as_str()).collect();
+        assert_eq!(
+            (paths, found.not_utf8),
+            (vec!["a/x.csv"], left_out.iter().map(ToString::to_string).collect()),
+            "{pattern}"
+        );
+    }
+}

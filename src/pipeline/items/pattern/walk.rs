@@ -7,9 +7,13 @@ use super::{Part, Pattern};
 use crate::job::Keys;
 use crate::words::instead;
 
+/// What stands in place of what is not UTF-8.
+const REPLACED: char = char::REPLACEMENT_CHARACTER;
+
 /// Where files are looked for; paths are relative to its top, with `/`.
 pub(in crate::pipeline) trait Tree {
-    /// The names in a folder, sorted, and whether each is a folder. Empty where there is no such folder.
+    /// The names in a folder, sorted, and whether each is a folder. Empty where there is no such folder. What is not
+    /// UTF-8 of a name is replaced ([`REPLACED`]): nothing stands under that name.
     fn list(&self, folder: &str) -> Vec<(String, bool)>;
     /// Whether a folder stands there.
     fn is_folder(&self, path: &str) -> bool;
@@ -44,8 +48,7 @@ impl Tree for Disk {
             .filter_map(|entry| {
                 let path = entry.path();
                 let folder = path.is_dir();
-                // Names that are not UTF-8 can't be keys, nor stand in tables.
-                let name = entry.file_name().into_string().ok()?;
+                let name = entry.file_name().to_string_lossy().into_owned();
                 (!folder || !self.is_out(&path)).then_some((name, folder))
             })
             .collect();
@@ -123,6 +126,8 @@ pub(in crate::pipeline) struct Matches {
     pub(in crate::pipeline) matches: Vec<Match>,
     /// Names that can be read in two ways.
     pub(in crate::pipeline) ambiguous: Vec<String>,
+    /// What fits but for a name that is not UTF-8, which can't be a key, nor stand in a table.
+    pub(in crate::pipeline) not_utf8: Vec<String>,
     /// Why nothing was found.
     pub(in crate::pipeline) nothing: Option<String>,
 }
@@ -131,6 +136,7 @@ struct Walk<'a> {
     pattern: &'a Pattern,
     tree: &'a dyn Tree,
     found: BTreeMap<String, Vec<Keys>>,
+    not_utf8: BTreeSet<String>,
     /// How many parts were followed where the walk got deepest, and the folder there.
     deepest: (usize, String),
 }
@@ -138,10 +144,12 @@ struct Walk<'a> {
 impl Pattern {
     /// Finds files (or folders).
     pub(in crate::pipeline) fn find(&self, tree: &dyn Tree) -> Matches {
-        let mut walk = Walk { pattern: self, tree, found: BTreeMap::new(), deepest: (0, String::new()) };
+        let (found, not_utf8) = (BTreeMap::new(), BTreeSet::new());
+        let mut walk = Walk { pattern: self, tree, found, not_utf8, deepest: (0, String::new()) };
         walk.step(0, String::new(), &Keys::default());
         let nothing = walk.found.is_empty().then(|| walk.why_nothing());
-        let mut found = Matches { nothing, ..Matches::default() };
+        let not_utf8 = walk.not_utf8.into_iter().collect();
+        let mut found = Matches { nothing, not_utf8, ..Matches::default() };
         for (path, mut keys) in walk.found {
             keys.sort();
             keys.dedup();
@@ -182,7 +190,7 @@ impl Walk<'_> {
                     let path = joined(&at, &name);
                     // Links may lead back, and what other runs made is no input unless it is named.
                     let passed = || self.tree.is_link(&path) || self.tree.is_folder(&joined(&path, ".lunula"));
-                    if is_folder && !name.starts_with('.') && !passed() {
+                    if is_folder && !name.starts_with('.') && !passed() && self.is_named(&path) {
                         self.step(part, path, keys);
                     }
                 }
@@ -193,13 +201,24 @@ impl Walk<'_> {
     fn follow(&mut self, part: usize, path: String, last: bool, keys: &Keys, is_folder: Option<bool>) {
         let plain = is_folder.is_none() && !self.pattern.folders;
         let is_folder = is_folder.unwrap_or_else(|| self.tree.is_folder(&path));
+        let fits = if last { is_folder == self.pattern.folders || plain } else { is_folder };
+        if !fits || !self.is_named(&path) {
+            return;
+        }
         if !last {
-            if is_folder {
-                self.step(part + 1, path, keys);
-            }
-        } else if (is_folder == self.pattern.folders || plain) && (is_folder || self.tree.is_file(&path)) {
+            self.step(part + 1, path, keys);
+        } else if is_folder || self.tree.is_file(&path) {
             self.found.entry(path).or_default().push(keys.clone());
         }
+    }
+
+    /// Whether all of a path's name is UTF-8; it is kept in mind where not.
+    fn is_named(&mut self, path: &str) -> bool {
+        let replaced = path.contains(REPLACED) && !self.tree.is_file(path) && !self.tree.is_folder(path);
+        if replaced {
+            self.not_utf8.insert(path.to_owned());
+        }
+        !replaced
     }
 
     fn why_nothing(&self) -> String {
