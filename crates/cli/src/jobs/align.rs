@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use anyhow::ensure;
 use clap::Args;
 use lunula::align::{AlignFigures, AlignInputs, AlignOptions, AlignOutputs, AlignReport, plan, run};
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::words::fixed;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 /// Label a photodiode log with joint angles: two clocks tied together, with a certificate of how well
 ///
@@ -58,18 +58,6 @@ impl AlignArgs {
         ensure!(task.is_none() || bids.is_some(), "--task names the files of a BIDS dataset: give --bids too");
         Ok(AlignInputs { joints: self.joints.clone(), log: self.log.clone(), tracks: self.tracks.clone() })
     }
-}
-
-impl Command for AlignArgs {
-    type Figures = AlignFigures;
-
-    type Outputs = AlignOutputs;
-
-    const NAME: &'static str = "align";
-
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        self.results.given(&self.given.said)
-    }
 
     fn outputs(&self) -> Option<AlignOutputs> {
         Some(AlignOutputs {
@@ -81,13 +69,23 @@ impl Command for AlignArgs {
             report: true,
         })
     }
+}
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs()?, &self.given.options, outputs)?.into())
+impl Command for AlignArgs {
+    type Figures = AlignFigures;
+
+    const NAME: &'static str = "align";
+
+    fn given(&self) -> Request<'_> {
+        self.results.given(&self.given.said)
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
-        Ok(run(&self.inputs()?, &self.given.options, outputs, watch)?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs()?, &self.given.options, self.outputs().as_ref())?.into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
+        Ok(run(&self.inputs()?, &self.given.options, &needed(self.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &AlignReport) {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lunula::camera::{CameraFigures, CameraOptions, CameraReport, Inputs, plan, run};
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 /// Measure a camera's lens from views of a chessboard, for the [camera] of a marker file
 ///
@@ -44,26 +44,20 @@ impl CameraArgs {
 impl Command for CameraArgs {
     type Figures = CameraFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "camera";
 
     const UNIT: &'static str = "files";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs(), &self.options(), self.results.outputs().as_ref())?.into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs(), &self.options(), outputs)?.into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<CameraReport> {
-        Ok(run(&self.inputs(), &self.options(), outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CameraReport> {
+        Ok(run(&self.inputs(), &self.options(), &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &CameraReport) {

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::layout::{LayoutFigures, LayoutInputs, LayoutOptions, LayoutReport, Method, plan, run};
 use lunula::predictor::DataFile;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 /// Choose where photodiodes serve best, out of all places of which there are readings (5.5, 7.2)
 ///
@@ -39,26 +39,20 @@ impl LayoutArgs {
 impl Command for LayoutArgs {
     type Figures = LayoutFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "layout";
 
     const UNIT: &'static str = "numbers of photodiodes";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs(), &self.given.options, self.results.outputs().as_ref()).into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs(), &self.given.options, outputs).into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<LayoutReport> {
-        Ok(run(&self.inputs(), &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<LayoutReport> {
+        Ok(run(&self.inputs(), &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &LayoutReport) {

@@ -49,7 +49,7 @@ pub(super) struct ResultArgs {
 
 impl ResultArgs {
     /// What [`Command::given`] answers; `said` are the options as they were written.
-    pub(super) fn given<'a>(&'a self, said: &'a Said) -> (&'a JobArgs, &'a Said, Option<&'a PathBuf>) {
+    pub(super) fn given<'a>(&'a self, said: &'a Said) -> Request<'a> {
         (&self.job, said, self.out.as_ref())
     }
 
@@ -58,6 +58,14 @@ impl ResultArgs {
         Outputs::of(self.out.as_ref(), !self.no_figures)
     }
 }
+
+/// The results of what is run, not only planned.
+pub(super) fn needed<T>(outputs: Option<T>) -> anyhow::Result<T> {
+    outputs.context("--out is needed: where the results go")
+}
+
+/// What every job takes, the options as they were written, and --out.
+pub(super) type Request<'a> = (&'a JobArgs, &'a Said, Option<&'a PathBuf>);
 
 /// What a command would do and leave out.
 pub(super) struct Plan {
@@ -77,24 +85,18 @@ pub(super) trait Command {
     /// The figures of its report.
     type Figures: Serialize;
 
-    /// Where its results go.
-    type Outputs;
-
     /// The job's name, as plans give it.
     const NAME: &'static str;
 
     /// What is counted while it runs: `frames`.
     const UNIT: &'static str = "steps";
 
-    /// What every job takes, the options as they were written, and --out.
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>);
+    fn given(&self) -> Request<'_>;
 
-    /// Where results go; of a plan, nothing need be said of it.
-    fn outputs(&self) -> Option<Self::Outputs>;
+    /// The plan, for which nothing need be said of where results go.
+    fn plan(&self) -> anyhow::Result<Plan>;
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan>;
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<Report<Self::Figures>>;
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<Report<Self::Figures>>;
 
     /// The figures in words.
     fn say(&self, common: &Common, report: &Report<Self::Figures>);
@@ -109,17 +111,15 @@ pub(super) trait Command {
 pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
     let (JobArgs { plan, common }, said, _) = command.given();
     let stop = common.start()?;
-    let outputs = command.outputs();
     if *plan {
-        return show(common, C::NAME, &command.plan(outputs.as_ref())?);
+        return show(common, C::NAME, &command.plan()?);
     }
-    let outputs = outputs.context("--out is needed: where the results go")?;
     let bar = common.progress(0, C::UNIT);
     let tick = |done: u64, all: Option<u64>| {
         bar.set_length(all.unwrap_or(done));
         bar.set_position(done);
     };
-    let report = command.run(&outputs, &Watch { said, stop: &stop, tick: &tick });
+    let report = command.run(&Watch { said, stop: &stop, tick: &tick });
     bar.finish_and_clear();
     let report = report?;
     name_failures(&report.failed);

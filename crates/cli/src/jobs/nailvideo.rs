@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::nailvideo::{Inputs, NailVideoFigures, NailVideoOptions, NailVideoReport, Outputs, mask_of, plan, run};
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 /// Read virtual photodiodes off a video of a nail: follow the nail, average places of it, find presses
 ///
@@ -60,20 +60,6 @@ impl NailVideoArgs {
     fn options(&self) -> NailVideoOptions {
         NailVideoOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
-}
-
-impl Command for NailVideoArgs {
-    type Figures = NailVideoFigures;
-
-    type Outputs = Outputs;
-
-    const NAME: &'static str = "nailvideo";
-
-    const UNIT: &'static str = "frames";
-
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        self.results.given(&self.given.said)
-    }
 
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
@@ -84,13 +70,25 @@ impl Command for NailVideoArgs {
             ending: if self.parquet { "parquet" } else { "csv" },
         })
     }
+}
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs()?, &self.options(), outputs)?.into())
+impl Command for NailVideoArgs {
+    type Figures = NailVideoFigures;
+
+    const NAME: &'static str = "nailvideo";
+
+    const UNIT: &'static str = "frames";
+
+    fn given(&self) -> Request<'_> {
+        self.results.given(&self.given.said)
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<NailVideoReport> {
-        Ok(run(&self.inputs()?, &self.options(), outputs, watch)?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs()?, &self.options(), self.outputs().as_ref())?.into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<NailVideoReport> {
+        Ok(run(&self.inputs()?, &self.options(), &needed(self.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &NailVideoReport) {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::posture::{Layout, Outputs, PostureFigures, PostureOptions, PostureReport, plan, run, suggest};
 
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 use crate::{Common, Outcome, print_line};
 
 /// Measure joint angles in a video of a finger with coloured markers, each frame with its time and standard error
@@ -76,20 +76,6 @@ impl PostureArgs {
     fn options(&self) -> PostureOptions {
         PostureOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
-}
-
-impl Command for PostureArgs {
-    type Figures = PostureFigures;
-
-    type Outputs = Outputs;
-
-    const UNIT: &'static str = "frames";
-
-    const NAME: &'static str = "posture";
-
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
-        self.results.given(&self.given.said)
-    }
 
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
@@ -100,13 +86,25 @@ impl Command for PostureArgs {
             report: true,
         })
     }
+}
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(&self.video, &self.layout()?, &self.options(), outputs)?.into())
+impl Command for PostureArgs {
+    type Figures = PostureFigures;
+
+    const UNIT: &'static str = "frames";
+
+    const NAME: &'static str = "posture";
+
+    fn given(&self) -> Request<'_> {
+        self.results.given(&self.given.said)
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
-        Ok(run(&self.video, &self.layout()?, &self.options(), outputs, watch)?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.video, &self.layout()?, &self.options(), self.outputs().as_ref())?.into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
+        Ok(run(&self.video, &self.layout()?, &self.options(), &needed(self.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PostureReport) {

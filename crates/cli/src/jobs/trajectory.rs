@@ -1,15 +1,13 @@
 //! `lunula trajectory`: tables of forces or angles for a prompter to play.
 
-use std::path::PathBuf;
-
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::predictor::trajectory::{
     BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryFigures,
     TrajectoryReport, plan, run as run_trajectory,
 };
 
-use crate::jobs::{self, Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
 use crate::{Common, Outcome};
 
 /// Write calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly
@@ -56,24 +54,18 @@ pub(crate) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
 impl<K: KindOptions> Command for KindArgs<K> {
     type Figures = TrajectoryFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "trajectory";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.given.options.options(), self.results.outputs().as_ref())?.into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(&self.given.options.options(), outputs)?.into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
-        Ok(run_trajectory(&self.given.options.options(), outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
+        Ok(run_trajectory(&self.given.options.options(), &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TrajectoryReport) {

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lunula::hemodynamics::{FitFigures, FitInputs, FitOptions, FitReport, fit, fit_plan};
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::words::fixed;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 const EXAMPLES: &str = "Examples:
 Stiffness and damping of all walls, and the photodiodes:
@@ -80,24 +80,18 @@ impl FitArgs {
 impl Command for FitArgs {
     type Figures = FitFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "fit";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(fit_plan(&self.inputs(), &self.given.options, self.results.outputs().as_ref())?.into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(fit_plan(&self.inputs(), &self.given.options, outputs)?.into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<FitReport> {
-        Ok(fit(&self.inputs(), &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<FitReport> {
+        Ok(fit(&self.inputs(), &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &FitReport) {

@@ -9,9 +9,9 @@ use lunula::hemodynamics::{
     CurveFigures, CurveOptions, CurveRange, CurveReport, SimulateFigures, SimulateInputs, SimulateOptions,
     SimulateReport, curve, curve_plan, simulate, simulate_plan,
 };
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 
-use crate::jobs::{self, Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
 use crate::{Common, Outcome, print_line};
 
 const EXAMPLES: &str = "Examples:
@@ -140,24 +140,18 @@ impl OverTime<'_> {
 impl Command for OverTime<'_> {
     type Figures = SimulateFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "simulate";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.args.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.args.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(simulate_plan(&self.inputs(), &self.given.options, self.args.results.outputs().as_ref())?.into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(simulate_plan(&self.inputs(), &self.given.options, outputs)?.into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
-        Ok(simulate(&self.inputs(), &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
+        Ok(simulate(&self.inputs(), &self.given.options, &needed(self.args.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &SimulateReport) {
@@ -180,24 +174,18 @@ struct Static<'a> {
 impl Command for Static<'_> {
     type Figures = CurveFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "simulate --static";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.args.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.args.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, self.args.results.outputs().as_ref())?.into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, outputs)?.into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
-        Ok(curve(self.args.params.as_deref(), &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
+        Ok(curve(self.args.params.as_deref(), &self.given.options, &needed(self.args.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &CurveReport) {

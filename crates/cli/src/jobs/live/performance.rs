@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::live::performance::{
     Comparison, MethodFigures, PerformanceFigures, PerformanceOptions, PerformanceReport, Statement, plan, run,
 };
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 const EXAMPLES: &str = "Examples:
 The thesis' course (appendix C): 1.42 m at 25 mm/s, 27 moves:
@@ -44,24 +44,24 @@ pub(crate) struct PerformanceArgs {
 impl Command for PerformanceArgs {
     type Figures = PerformanceFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "performance";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(self.results.outputs().as_ref()).into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(plan(outputs).into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PerformanceReport> {
-        Ok(run(&self.trials, &self.trials.display().to_string(), &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PerformanceReport> {
+        Ok(run(
+            &self.trials,
+            &self.trials.display().to_string(),
+            &self.given.options,
+            &needed(self.results.outputs())?,
+            watch,
+        )?)
     }
 
     fn say(&self, common: &Common, report: &PerformanceReport) {

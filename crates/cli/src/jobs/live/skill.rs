@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 use clap::Args;
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::live::skill::{FingerSpread, SkillFigures, SkillInputs, SkillOptions, SkillReport, plan, run};
 use lunula::predictor::DataFile;
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 
 const EXAMPLES: &str = "Examples:
 Trials of one person, a recording each, the first of them the reference:
@@ -66,28 +66,22 @@ impl SkillArgs {
 impl Command for SkillArgs {
     type Figures = SkillFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "skill";
 
     const UNIT: &'static str = "recordings";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
-    }
-
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let inputs = self.inputs()?;
         let reference = inputs.reference.is_some();
-        Ok(plan(inputs.recordings.len(), reference, &self.given.options, outputs)?.into())
+        Ok(plan(inputs.recordings.len(), reference, &self.given.options, self.results.outputs().as_ref())?.into())
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<SkillReport> {
-        Ok(run(&self.inputs()?, &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SkillReport> {
+        Ok(run(&self.inputs()?, &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &SkillReport) {

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::live::{
     ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, SwitchInputs, TuneFigures, TuneOptions,
     TuneReport, evaluate_plan, evaluate_switch, tune_plan, tune_switch,
 };
 use lunula::predictor::DataFile;
 
-use crate::jobs::{self, Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
 use crate::{Common, Outcome};
 
 /// Choose and judge the thresholds of the virtual switch (6.1), for `lunula live --switch`
@@ -77,26 +77,25 @@ pub(crate) fn run(args: &SwitchArgs) -> anyhow::Result<Outcome> {
 impl Command for TuneArgs {
     type Figures = TuneFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "switch tune";
 
     const UNIT: &'static str = "recordings";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(tune_plan(self.recordings.len(), self.results.outputs().as_ref()).into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(tune_plan(self.recordings.len(), outputs).into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
-        Ok(tune_switch(&inputs(&self.recordings, &self.models), &self.given.options, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
+        Ok(tune_switch(
+            &inputs(&self.recordings, &self.models),
+            &self.given.options,
+            &needed(self.results.outputs())?,
+            watch,
+        )?)
     }
 
     fn say(&self, common: &Common, report: &TuneReport) {
@@ -116,27 +115,21 @@ impl Command for TuneArgs {
 impl Command for EvaluateArgs {
     type Figures = EvaluateSwitchFigures;
 
-    type Outputs = Outputs;
-
     const NAME: &'static str = "switch evaluate";
 
     const UNIT: &'static str = "recordings";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        self.results.outputs()
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(evaluate_plan(self.recordings.len(), self.results.outputs().as_ref()).into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(evaluate_plan(self.recordings.len(), outputs).into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
         let inputs = inputs(&self.recordings, &self.models);
-        Ok(evaluate_switch(&self.switch, &inputs, &self.given.options, outputs, watch)?)
+        Ok(evaluate_switch(&self.switch, &inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &EvaluateSwitchReport) {

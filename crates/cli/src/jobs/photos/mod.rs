@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::photo::outline::SavedOutlines;
 use lunula::photo::{
     MapsJob, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosFigures, PhotosOptions, PhotosReport, Results, merge,
     merge_plan, plan, run,
 };
 
-use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::jobs::{self, Command, JobArgs, Plan, Request, needed};
 use crate::{Common, Outcome};
 
 /// Turn nail photographs into coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
@@ -89,6 +89,14 @@ impl PhotosArgs {
         let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(self.masks.as_deref()).collect();
         Ok(PhotoSet::open(set, &apart)?)
     }
+
+    fn outputs(&self) -> Option<Outputs> {
+        let outlines = self.write_outlines.as_ref().map(|folder| match folder {
+            Some(folder) => OutlineHome::Folder(folder.clone()),
+            None => OutlineHome::BesidePhotographs,
+        });
+        Some(Outputs { folder: self.out.clone()?, results: Results::Maps, outlines })
+    }
 }
 
 /// `merge`, or the job.
@@ -114,33 +122,23 @@ fn say_poses(common: &Common, report: &PhotosReport) {
 impl Command for PhotosArgs {
     type Figures = PhotosFigures;
 
-    type Outputs = Outputs;
-
     const UNIT: &'static str = "photographs";
 
     const NAME: &'static str = "photos";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        let outlines = self.write_outlines.as_ref().map(|folder| match folder {
-            Some(folder) => OutlineHome::Folder(folder.clone()),
-            None => OutlineHome::BesidePhotographs,
-        });
-        Some(Outputs { folder: self.out.clone()?, results: Results::Maps, outlines })
-    }
-
-    fn plan(&self, outputs: Option<&Outputs>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let (options, set) = (self.options()?, self.set()?);
-        let steps = plan(&set, &options, outputs.context("--out is needed")?);
+        let steps = plan(&set, &options, &needed(self.outputs())?);
         Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
     }
 
-    fn run(&self, outputs: &Outputs, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
         let (options, set) = (self.options()?, self.set()?);
-        let report = run(&set, &options, outputs, watch);
+        let report = run(&set, &options, &needed(self.outputs())?, watch);
         Ok(report.inspect_err(|why| {
             if let PhotosError::NothingUsable { outlines, .. } = why {
                 let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
@@ -161,24 +159,18 @@ impl Command for PhotosArgs {
 impl Command for MergeArgs {
     type Figures = PhotosFigures;
 
-    type Outputs = PathBuf;
-
     const NAME: &'static str = "photos merge";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         (&self.job, &self.given.said, Some(&self.out))
     }
 
-    fn outputs(&self) -> Option<PathBuf> {
-        Some(self.out.clone())
-    }
-
-    fn plan(&self, _: Option<&PathBuf>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         Ok(merge_plan(&self.parts).into())
     }
 
-    fn run(&self, out: &PathBuf, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
-        Ok(merge(&self.parts, out, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+        Ok(merge(&self.parts, &self.out, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PhotosReport) {

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::Resettable;
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::predictor::{AnalyseFigures, AnalyseJob, AnalyseReport, ModelMode, analyse, analyse_plan};
 
 use crate::Common;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs};
 
 /// Show which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
@@ -33,24 +33,18 @@ pub(crate) struct AnalyseArgs {
 impl Command for AnalyseArgs {
     type Figures = AnalyseFigures;
 
-    type Outputs = Option<Outputs>;
-
     const NAME: &'static str = "analyse";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Self::Outputs> {
-        Some(self.results.outputs())
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(analyse_plan(self.results.outputs().as_ref()).into())
     }
 
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
-        Ok(analyse_plan(outputs.and_then(Option::as_ref)).into())
-    }
-
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
-        Ok(analyse(&self.model, outputs.as_ref(), watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
+        Ok(analyse(&self.model, self.results.outputs().as_ref(), watch)?)
     }
 
     fn say(&self, common: &Common, report: &AnalyseReport) {

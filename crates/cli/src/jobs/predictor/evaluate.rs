@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::Resettable;
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::predictor::{
     DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, Splits, evaluate, evaluate_plan, way,
 };
 
 use crate::Common;
 use crate::jobs::predictor::{figure, say_merit};
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs};
 
 /// Measure how far off a model is on recordings, and how far off its recipe is on recordings held out
 ///
@@ -42,27 +42,21 @@ pub(crate) struct EvaluateArgs {
 impl Command for EvaluateArgs {
     type Figures = EvaluateFigures;
 
-    type Outputs = Option<Outputs>;
-
     const NAME: &'static str = "evaluate";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Self::Outputs> {
-        Some(self.results.outputs())
-    }
-
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let options = self.given.options.options();
         let ambient = DataFile::ambient_step(&DataFile::of(&self.data), &options.rows);
-        Ok(evaluate_plan(self.data.len(), ambient, &options, None, outputs.and_then(Option::as_ref)).into())
+        Ok(evaluate_plan(self.data.len(), ambient, &options, None, self.results.outputs().as_ref()).into())
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
         let options = self.given.options.options();
-        Ok(evaluate(&self.model, &DataFile::of(&self.data), &options, outputs.as_ref(), watch)?)
+        Ok(evaluate(&self.model, &DataFile::of(&self.data), &options, self.results.outputs().as_ref(), watch)?)
     }
 
     fn say(&self, common: &Common, report: &EvaluateReport) {

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{bail, ensure};
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::predictor::{DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan};
 
-use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::jobs::{self, Command, JobArgs, Plan, Request, needed};
 use crate::{Common, Outcome};
 
 /// Predict forces and angle from photodiodes, with models that `lunula train` wrote
@@ -56,27 +56,21 @@ impl PredictArgs {
 impl Command for PredictArgs {
     type Figures = PredictFigures;
 
-    type Outputs = PathBuf;
-
     const NAME: &'static str = "predict";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn outputs(&self) -> Option<PathBuf> {
-        self.out.clone()
-    }
-
-    fn plan(&self, _: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let ((data, models), options) = (self.parts()?, self.given.options.options()?);
         let ambient = DataFile::ambient_step([&DataFile::from(data.to_owned())], &options.rows);
         Ok(predict_plan(models.len(), ambient, &options).into())
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
-        let (data, models) = self.parts()?;
-        Ok(predict(models, data, &self.given.options.options()?, outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
+        let (out, (data, models)) = (needed(self.out.as_ref())?, self.parts()?);
+        Ok(predict(models, data, &self.given.options.options()?, out, watch)?)
     }
 
     fn say(&self, common: &Common, report: &PredictReport) {

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::Resettable;
-use lunula::job::{Given, Outputs, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::predictor::{DataFile, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 
 use crate::Common;
 use crate::jobs::predictor::figure;
-use crate::jobs::{Command, JobArgs, Plan, ResultArgs};
+use crate::jobs::{Command, Plan, Request, ResultArgs};
 
 /// Compare the linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
@@ -37,27 +37,21 @@ pub(crate) struct PruneArgs {
 impl Command for PruneArgs {
     type Figures = PruneFigures;
 
-    type Outputs = Option<Outputs>;
-
     const NAME: &'static str = "prune";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         self.results.given(&self.given.said)
     }
 
-    fn outputs(&self) -> Option<Self::Outputs> {
-        Some(self.results.outputs())
-    }
-
-    fn plan(&self, outputs: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let files = [&self.data[..], &self.validate].concat();
         let ambient = DataFile::ambient_step(&DataFile::of(&files), &self.given.options.rows);
-        Ok(prune_plan([self.data.len(), self.validate.len()], ambient, outputs.and_then(Option::as_ref)).into())
+        Ok(prune_plan([self.data.len(), self.validate.len()], ambient, self.results.outputs().as_ref()).into())
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
         let (data, validate) = (DataFile::of(&self.data), DataFile::of(&self.validate));
-        Ok(prune(&data, &validate, &self.given.options.wanted(), outputs.as_ref(), watch)?)
+        Ok(prune(&data, &validate, &self.given.options.wanted(), self.results.outputs().as_ref(), watch)?)
     }
 
     fn say(&self, common: &Common, report: &PruneReport) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Said, Watch};
+use lunula::job::{Given, Watch};
 use lunula::predictor::models::{EigennailsReport, Report};
 use lunula::predictor::{
     DataFile, TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan,
@@ -11,7 +11,7 @@ use lunula::predictor::{
 
 use crate::Common;
 use crate::jobs::predictor::{figure, say_merit};
-use crate::jobs::{Command, JobArgs, Plan};
+use crate::jobs::{Command, JobArgs, Plan, Request, needed};
 
 /// Train a model that predicts forces or angles from photodiodes (chapter 5)
 ///
@@ -53,31 +53,29 @@ impl TrainArgs {
             stop_on: DataFile::of(&self.stop_on),
         }
     }
+
+    fn outputs(&self) -> Option<TrainOutputs> {
+        Some(TrainOutputs { model: self.out.clone()?, learning_curve: self.learning_curve.clone(), merit: None })
+    }
 }
 
 impl Command for TrainArgs {
     type Figures = TrainFigures;
 
-    type Outputs = TrainOutputs;
-
     const NAME: &'static str = "train";
 
-    fn given(&self) -> (&JobArgs, &Said, Option<&PathBuf>) {
+    fn given(&self) -> Request<'_> {
         (&self.job, &self.given.said, self.out.as_ref())
     }
 
-    fn outputs(&self) -> Option<TrainOutputs> {
-        Some(TrainOutputs { model: self.out.clone()?, learning_curve: self.learning_curve.clone(), merit: None })
-    }
-
-    fn plan(&self, _: Option<&Self::Outputs>) -> anyhow::Result<Plan> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let (inputs, options) = (self.inputs(), self.given.options.options());
         let ambient = inputs.ambient_step(&options.wanted.rows);
         Ok(train_plan(&inputs, ambient, &options.recipe, self.learning_curve.is_some()).into())
     }
 
-    fn run(&self, outputs: &Self::Outputs, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
-        Ok(train(&self.inputs(), &self.given.options.options(), outputs, watch)?)
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
+        Ok(train(&self.inputs(), &self.given.options.options(), &needed(self.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TrainReport) {
