@@ -37,10 +37,13 @@ fn coefficients(text: &str) -> Result<usize, String> {
 }
 
 /// What is looked at.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct Inputs {
-    /// Photographs, folders of photographs, videos.
+    /// A folder of photographs (png, jpg, tif, bmp), single photographs, or videos
+    #[arg(required = true)]
     pub views: Vec<PathBuf>,
-    /// A photograph or video of the board in the finger's plane.
+    /// A photograph or video of the board lying in the plane in which the finger moves, filmed as the videos are: the
+    /// plane goes into [camera.plane], and angles seen obliquely are measured right
+    #[arg(long, value_name = "FILE")]
     pub plane: Option<PathBuf>,
 }

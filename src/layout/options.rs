@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueHint};
 
 use crate::job::{not_negative, number};
 use crate::log::LogReading;
@@ -112,10 +112,12 @@ fn diameter(text: &str) -> Result<f64, String> {
 }
 
 /// What is read.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct LayoutInputs {
-    /// Tables and logs, or one folder of maps.
+    /// Tables (csv, parquet) or raw logs; or one folder that lunula photos wrote
+    #[arg(required = true, value_name = "INPUT", value_parser = DataFile::parser(), value_hint = ValueHint::AnyPath)]
     pub data: Vec<DataFile>,
-    /// Places of the columns `P1`, `P2`, ..: TOML or JSON.
+    /// Where the photodiodes P1, P2, .. are (toml or json) [default: the thesis' eight]
+    #[arg(long, value_name = "FILE")]
     pub positions: Option<PathBuf>,
 }

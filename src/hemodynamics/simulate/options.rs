@@ -10,12 +10,16 @@ use crate::hemodynamics::grid::{multiple, multiples_within};
 use crate::job;
 
 /// The files that a run reads.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct SimulateInputs {
-    /// The parameters.
-    pub params: Option<PathBuf>,
-    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `pf1` and `pf2`, and `ph_Pa`, `pl_Pa` where it has them.
+    /// Read the loads from a table time_s,pf1_Pa,pf2_Pa instead (and ph_Pa, pl_Pa where they change): straight between
+    /// rows, held before and after
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pf1", "pf2"])]
     pub loads: Option<PathBuf>,
+    /// Parameters under the thesis' symbols with their units, such as k_C1_N_per_m = 1e5 [default: the thesis' table];
+    /// --print-params writes a whole file to start from
+    #[arg(long, value_name = "PARAMS.toml")]
+    pub params: Option<PathBuf>,
 }
 
 /// How to run: the options of `lunula simulate` and of a pipeline's stage.

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::iter;
 use std::path::PathBuf;
 
+use clap::{Args, ValueHint};
 use lunula_live::switch::{LONGEST_GAP_S, Trace, compared};
 use lunula_predictor::{Gate, Predictor};
 
@@ -23,11 +24,14 @@ const MOST_ROWS: usize = 100_000_000;
 const MOST_UNANSWERED: f64 = 0.01;
 
 /// What a switch is chosen or judged on.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Args)]
 pub struct SwitchInputs {
-    /// Recordings that the models were not trained on.
+    /// Recordings: tables or logs with photodiodes and what is true of contact
+    #[arg(required = true, value_name = "RECORDING", value_parser = DataFile::parser())]
+    #[arg(value_hint = ValueHint::AnyPath)]
     pub recordings: Vec<DataFile>,
-    /// The models' files.
+    /// Models that `lunula train` wrote
+    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
     pub models: Vec<PathBuf>,
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
 use super::RowOptions;
 use crate::job::At;
 use crate::log::ambient_step_of;
@@ -36,6 +38,12 @@ impl From<&At> for DataFile {
 }
 
 impl DataFile {
+    /// Reads an argument of the command line. It says `value_hint = AnyPath`, which only paths say by themselves.
+    #[must_use]
+    pub fn parser() -> impl TypedValueParser<Value = Self> {
+        PathBufValueParser::new().map(Self::from)
+    }
+
     /// Files, each called as its path is written.
     #[must_use]
     pub fn of(paths: &[PathBuf]) -> Vec<Self> {

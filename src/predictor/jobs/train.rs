@@ -7,6 +7,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clap::{Args, ValueHint};
 use lunula_predictor::{
     Dataset, Intervals, Kind, Predictor, Recipe, Report as FitReport, calibrate, recording_hashes, repeated_paths,
     score, shared, with_lags,
@@ -24,13 +25,19 @@ use crate::predictor::merit::table::{MeritRows, merit_table};
 use crate::stages::{Stages, Step, left_out};
 
 /// What a model is made from.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Args)]
 pub struct TrainInputs {
-    /// Recordings to train on.
+    /// Recordings to train on (.csv, .csv.gz where a log, .parquet)
+    #[arg(required = true, value_name = "DATA", value_parser = DataFile::parser(), value_hint = ValueHint::AnyPath)]
     pub data: Vec<DataFile>,
-    /// Recordings to report on; their errors tell the prediction intervals.
+    /// Recordings to report on
+    #[arg(long, value_name = "DATA", num_args = 1.., value_parser = DataFile::parser())]
+    #[arg(value_hint = ValueHint::AnyPath)]
     pub validate: Vec<DataFile>,
-    /// Recordings on which a network stops early; none: a part of those to train on.
+    /// Recordings on which the network's training stops early [default: every fifth of 20 blocks of each training
+    /// recording]
+    #[arg(long, value_name = "DATA", num_args = 1.., value_parser = DataFile::parser())]
+    #[arg(value_hint = ValueHint::AnyPath)]
     pub stop_on: Vec<DataFile>,
 }
 

@@ -1,7 +1,5 @@
 //! `lunula camera`: views of a chessboard to a lens.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use lunula::camera::{CameraFigures, CameraOptions, CameraReport, Inputs, plan, run};
 use lunula::job::{Given, Watch};
@@ -18,24 +16,15 @@ use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 #[derive(Debug, Args)]
 #[command(mut_arg("out", |out| out.value_name("CAMERA.toml").help("The lens, as a marker file has it")))]
 pub(crate) struct CameraArgs {
-    /// A folder of photographs (png, jpg, tif, bmp), single photographs, or videos
-    #[arg(required = true)]
-    views: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<CameraOptions>,
-    /// A photograph or video of the board lying in the plane in which the finger moves, filmed as the videos are: the
-    /// plane goes into [camera.plane], and angles seen obliquely are measured right
-    #[arg(long, value_name = "FILE")]
-    plane: Option<PathBuf>,
+    #[command(flatten)]
+    inputs: Inputs,
     #[command(flatten)]
     results: ResultArgs,
 }
 
 impl CameraArgs {
-    fn inputs(&self) -> Inputs {
-        Inputs { views: self.views.clone(), plane: self.plane.clone() }
-    }
-
     fn options(&self) -> CameraOptions {
         CameraOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
@@ -53,11 +42,11 @@ impl Command for CameraArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs(), &self.options(), self.results.outputs().as_ref())?.into())
+        Ok(plan(&self.inputs, &self.options(), self.results.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CameraReport> {
-        Ok(run(&self.inputs(), &self.options(), &needed(self.results.outputs())?, watch)?)
+        Ok(run(&self.inputs, &self.options(), &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &CameraReport) {
@@ -81,7 +70,7 @@ impl Command for CameraArgs {
         common.say(&format!(
             "{} of {} views used; residuals {:.3} px RMS; {undistorted}; corners cover {:.0} % of the picture",
             report.views.len(),
-            report.looked_at + usize::from(self.plane.is_some()),
+            report.looked_at + usize::from(self.inputs.plane.is_some()),
             report.rms_px,
             100.0 * report.covered
         ));

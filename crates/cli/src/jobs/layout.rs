@@ -1,11 +1,8 @@
 //! `lunula layout`: where to put photodiodes.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use lunula::job::{Given, Watch};
 use lunula::layout::{LayoutFigures, LayoutInputs, LayoutOptions, LayoutReport, Method, plan, run};
-use lunula::predictor::DataFile;
 
 use crate::Common;
 use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
@@ -18,22 +15,12 @@ use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
 /// and the phantom read as positions, layout.csv, pictures and run.json.
 #[derive(Debug, Args)]
 pub(crate) struct LayoutArgs {
-    /// Tables (csv, parquet) or raw logs; or one folder that lunula photos wrote
-    #[arg(required = true, value_name = "INPUT")]
-    data: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<LayoutOptions>,
-    /// Where the photodiodes P1, P2, .. are (toml or json) [default: the thesis' eight]
-    #[arg(long, value_name = "FILE")]
-    positions: Option<PathBuf>,
+    #[command(flatten)]
+    inputs: LayoutInputs,
     #[command(flatten)]
     results: ResultArgs,
-}
-
-impl LayoutArgs {
-    fn inputs(&self) -> LayoutInputs {
-        LayoutInputs { data: DataFile::of(&self.data), positions: self.positions.clone() }
-    }
 }
 
 impl Command for LayoutArgs {
@@ -48,11 +35,11 @@ impl Command for LayoutArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs(), &self.given.options, self.results.outputs().as_ref()).into())
+        Ok(plan(&self.inputs, &self.given.options, self.results.outputs().as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<LayoutReport> {
-        Ok(run(&self.inputs(), &self.given.options, &needed(self.results.outputs())?, watch)?)
+        Ok(run(&self.inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &LayoutReport) {

@@ -1,7 +1,5 @@
 //! `lunula simulate`: the hemodynamic model under loads, over time or at rest.
 
-use std::path::PathBuf;
-
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, FromArgMatches};
@@ -53,14 +51,8 @@ Exit status: 0 all done; 1 a vessel closed and --keep-partial wrote the rows bef
 pub(crate) struct SimulateArgs {
     #[command(flatten)]
     way: Way,
-    /// Read the loads from a table time_s,pf1_Pa,pf2_Pa instead (and ph_Pa, pl_Pa where they change): straight between
-    /// rows, held before and after
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pf1", "pf2"])]
-    loads: Option<PathBuf>,
-    /// Parameters under the thesis' symbols with their units, such as k_C1_N_per_m = 1e5 [default: the thesis' table];
-    /// --print-params writes a whole file to start from
-    #[arg(long, value_name = "PARAMS.toml")]
-    params: Option<PathBuf>,
+    #[command(flatten)]
+    inputs: SimulateInputs,
     /// Print all parameters as a file for --params, and do nothing else
     #[arg(long)]
     print_params: bool,
@@ -117,7 +109,7 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<Outcome> {
             Way::OverTime(given) => &given.options.model,
             Way::Static(given) => &given.options.model,
         };
-        print_line(model.parameters(args.params.as_deref())?.to_toml().trim_end());
+        print_line(model.parameters(args.inputs.params.as_deref())?.to_toml().trim_end());
         return Ok(Outcome::Done);
     }
     match &args.way {
@@ -131,12 +123,6 @@ struct OverTime<'a> {
     given: &'a Given<SimulateOptions>,
 }
 
-impl OverTime<'_> {
-    fn inputs(&self) -> SimulateInputs {
-        SimulateInputs { params: self.args.params.clone(), loads: self.args.loads.clone() }
-    }
-}
-
 impl Command for OverTime<'_> {
     type Figures = SimulateFigures;
 
@@ -147,11 +133,11 @@ impl Command for OverTime<'_> {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(simulate_plan(&self.inputs(), &self.given.options, self.args.results.outputs().as_ref())?.into())
+        Ok(simulate_plan(&self.args.inputs, &self.given.options, self.args.results.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
-        Ok(simulate(&self.inputs(), &self.given.options, &needed(self.args.results.outputs())?, watch)?)
+        Ok(simulate(&self.args.inputs, &self.given.options, &needed(self.args.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &SimulateReport) {
@@ -181,11 +167,17 @@ impl Command for Static<'_> {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, self.args.results.outputs().as_ref())?.into())
+        Ok(curve_plan(self.args.inputs.params.as_deref(), &self.given.options, self.args.results.outputs().as_ref())?
+            .into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
-        Ok(curve(self.args.params.as_deref(), &self.given.options, &needed(self.args.results.outputs())?, watch)?)
+        Ok(curve(
+            self.args.inputs.params.as_deref(),
+            &self.given.options,
+            &needed(self.args.results.outputs())?,
+            watch,
+        )?)
     }
 
     fn say(&self, common: &Common, report: &CurveReport) {

@@ -8,7 +8,6 @@ use lunula::live::{
     ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, SwitchInputs, TuneFigures, TuneOptions,
     TuneReport, evaluate_plan, evaluate_switch, tune_plan, tune_switch,
 };
-use lunula::predictor::DataFile;
 
 use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
 use crate::{Common, Outcome};
@@ -35,12 +34,8 @@ enum What {
 #[derive(Debug, Args)]
 #[command(mut_arg("out", |out| out.value_name("SWITCH.toml").help("The switch")))]
 struct TuneArgs {
-    /// Recordings: tables or logs with photodiodes and what is true of contact
-    #[arg(required = true, value_name = "RECORDING")]
-    recordings: Vec<PathBuf>,
-    /// Models that `lunula train` wrote
-    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
-    models: Vec<PathBuf>,
+    #[command(flatten)]
+    inputs: SwitchInputs,
     #[command(flatten)]
     given: Given<TuneOptions>,
     #[command(flatten)]
@@ -55,12 +50,8 @@ struct EvaluateArgs {
     /// The switch
     #[arg(value_name = "SWITCH.toml")]
     switch: PathBuf,
-    /// Recordings: tables or logs with photodiodes and what is true of contact
-    #[arg(required = true, value_name = "RECORDING")]
-    recordings: Vec<PathBuf>,
-    /// Models that `lunula train` wrote
-    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
-    models: Vec<PathBuf>,
+    #[command(flatten)]
+    inputs: SwitchInputs,
     #[command(flatten)]
     given: Given<ContactOptions>,
     #[command(flatten)]
@@ -86,16 +77,11 @@ impl Command for TuneArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(tune_plan(self.recordings.len(), self.results.outputs().as_ref()).into())
+        Ok(tune_plan(self.inputs.recordings.len(), self.results.outputs().as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
-        Ok(tune_switch(
-            &inputs(&self.recordings, &self.models),
-            &self.given.options,
-            &needed(self.results.outputs())?,
-            watch,
-        )?)
+        Ok(tune_switch(&self.inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TuneReport) {
@@ -124,21 +110,16 @@ impl Command for EvaluateArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(evaluate_plan(self.recordings.len(), self.results.outputs().as_ref()).into())
+        Ok(evaluate_plan(self.inputs.recordings.len(), self.results.outputs().as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
-        let inputs = inputs(&self.recordings, &self.models);
-        Ok(evaluate_switch(&self.switch, &inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
+        Ok(evaluate_switch(&self.switch, &self.inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &EvaluateSwitchReport) {
         say_evaluation(common, "on these recordings", &report.all);
     }
-}
-
-fn inputs(recordings: &[PathBuf], models: &[PathBuf]) -> SwitchInputs {
-    SwitchInputs { recordings: DataFile::of(recordings), models: models.to_vec() }
 }
 
 fn say_evaluation(common: &Common, wherever: &str, found: &Evaluation) {

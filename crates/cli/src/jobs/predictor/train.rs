@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::job::{Given, Watch};
 use lunula::predictor::models::{EigennailsReport, Report};
-use lunula::predictor::{
-    DataFile, TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan,
-};
+use lunula::predictor::{TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan};
 
 use crate::Common;
 use crate::jobs::predictor::{figure, say_merit};
@@ -23,16 +21,8 @@ use crate::jobs::{Command, JobArgs, Plan, Request, needed};
 /// errors give the prediction intervals: name recordings of another session.
 #[derive(Debug, Args)]
 pub(crate) struct TrainArgs {
-    /// Recordings to train on (.csv, .csv.gz where a log, .parquet)
-    #[arg(required = true, value_name = "DATA")]
-    data: Vec<PathBuf>,
-    /// Recordings to report on
-    #[arg(long, value_name = "DATA", num_args = 1..)]
-    validate: Vec<PathBuf>,
-    /// Recordings on which the network's training stops early [default: every fifth of 20 blocks of each training
-    /// recording]
-    #[arg(long, value_name = "DATA", num_args = 1..)]
-    stop_on: Vec<PathBuf>,
+    #[command(flatten)]
+    inputs: TrainInputs,
     #[command(flatten)]
     given: Given<TrainChoices>,
     /// The model file
@@ -46,14 +36,6 @@ pub(crate) struct TrainArgs {
 }
 
 impl TrainArgs {
-    fn inputs(&self) -> TrainInputs {
-        TrainInputs {
-            data: DataFile::of(&self.data),
-            validate: DataFile::of(&self.validate),
-            stop_on: DataFile::of(&self.stop_on),
-        }
-    }
-
     fn outputs(&self) -> Option<TrainOutputs> {
         Some(TrainOutputs { model: self.out.clone()?, learning_curve: self.learning_curve.clone(), merit: None })
     }
@@ -69,13 +51,13 @@ impl Command for TrainArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        let (inputs, options) = (self.inputs(), self.given.options.options());
-        let ambient = inputs.ambient_step(&options.wanted.rows);
-        Ok(train_plan(&inputs, ambient, &options.recipe, self.learning_curve.is_some()).into())
+        let options = self.given.options.options();
+        let ambient = self.inputs.ambient_step(&options.wanted.rows);
+        Ok(train_plan(&self.inputs, ambient, &options.recipe, self.learning_curve.is_some()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
-        Ok(train(&self.inputs(), &self.given.options.options(), &needed(self.outputs())?, watch)?)
+        Ok(train(&self.inputs, &self.given.options.options(), &needed(self.outputs())?, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TrainReport) {
