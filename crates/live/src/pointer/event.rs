@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
 
 /// A button of the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -27,14 +26,24 @@ pub enum Reason {
     End,
 }
 
-/// An event. Times are seconds of the stream's clock.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Event {
+/// Something that a pointer did. It is written as its time, the word of what was done, then what belongs to that.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Event {
+    /// When it was decided, seconds of the stream's clock.
+    #[serde(rename = "t")]
+    pub t_s: f64,
+    /// What was done.
+    #[serde(flatten)]
+    pub what: What,
+}
+
+/// What a pointer did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "event", rename_all = "lowercase")]
+pub enum What {
     /// The pointer moves by whole counts: x to the right for positive `Fx_N`, y down (towards the person) for negative
     /// `Fy_N`, as screens count.
     Move {
-        /// When.
-        t_s: f64,
         /// Counts to the right.
         dx: i32,
         /// Counts down.
@@ -42,8 +51,6 @@ pub enum Event {
     },
     /// A button goes down or up.
     Button {
-        /// When.
-        t_s: f64,
         /// Which.
         button: Button,
         /// Down, or up.
@@ -51,72 +58,37 @@ pub enum Event {
     },
     /// The page scrolls by whole lines.
     Scroll {
-        /// When.
-        t_s: f64,
         /// Lines up; negative: down.
         lines: i32,
     },
     /// The zero of the shear was set, while the finger did not touch.
     Zero {
-        /// When.
-        t_s: f64,
         /// What now counts as no shear along x, N.
+        #[serde(rename = "Fx_N")]
         fx_n: f64,
         /// Along y, N.
+        #[serde(rename = "Fy_N")]
         fy_n: f64,
     },
     /// A button was held until it drags: until it is let go, motion counts from this shear.
     Drag {
-        /// When.
-        t_s: f64,
         /// Shear along x, N.
+        #[serde(rename = "Fx_N")]
         fx_n: f64,
         /// Along y, N.
+        #[serde(rename = "Fy_N")]
         fy_n: f64,
     },
     /// The finger was seen lifted: from now on it moves and clicks.
-    Ready {
-        /// When.
-        t_s: f64,
-    },
+    Ready,
     /// The pointer let go of everything, until the finger is seen lifted.
     Lost {
-        /// When.
-        t_s: f64,
         /// Why.
         reason: Reason,
     },
 }
 
 impl Event {
-    /// When it was decided, seconds of the stream's clock.
-    #[must_use]
-    pub fn t_s(&self) -> f64 {
-        match *self {
-            Self::Move { t_s, .. }
-            | Self::Button { t_s, .. }
-            | Self::Scroll { t_s, .. }
-            | Self::Zero { t_s, .. }
-            | Self::Drag { t_s, .. }
-            | Self::Ready { t_s }
-            | Self::Lost { t_s, .. } => t_s,
-        }
-    }
-
-    /// The word of the key `event`.
-    #[must_use]
-    pub fn word(&self) -> &'static str {
-        match self {
-            Self::Move { .. } => "move",
-            Self::Button { .. } => "button",
-            Self::Scroll { .. } => "scroll",
-            Self::Zero { .. } => "zero",
-            Self::Drag { .. } => "drag",
-            Self::Ready { .. } => "ready",
-            Self::Lost { .. } => "lost",
-        }
-    }
-
     /// A line of JSON: `{"t":1.25,"event":"move","dx":1,"dy":0}`. Nothing is allocated.
     ///
     /// # Errors
@@ -127,50 +99,32 @@ impl Event {
     }
 }
 
-/// The time, the word, then what belongs to it.
-impl Serialize for Event {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("t", &self.t_s())?;
-        map.serialize_entry("event", self.word())?;
-        match self {
-            Self::Move { dx, dy, .. } => {
-                map.serialize_entry("dx", dx)?;
-                map.serialize_entry("dy", dy)?;
-            }
-            Self::Button { button, down, .. } => {
-                map.serialize_entry("button", button)?;
-                map.serialize_entry("down", down)?;
-            }
-            Self::Scroll { lines, .. } => map.serialize_entry("lines", lines)?,
-            Self::Zero { fx_n, fy_n, .. } | Self::Drag { fx_n, fy_n, .. } => {
-                map.serialize_entry("Fx_N", fx_n)?;
-                map.serialize_entry("Fy_N", fy_n)?;
-            }
-            Self::Ready { .. } => {}
-            Self::Lost { reason, .. } => map.serialize_entry("reason", reason)?,
-        }
-        map.end()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const EVENTS: [(Event, &str); 8] = [
-        (Event::Move { t_s: 1.25, dx: 1, dy: 0 }, r#"{"t":1.25,"event":"move","dx":1,"dy":0}"#),
+        (Event { t_s: 1.25, what: What::Move { dx: 1, dy: 0 } }, r#"{"t":1.25,"event":"move","dx":1,"dy":0}"#),
         (
-            Event::Button { t_s: 2.0, button: Button::Left, down: true },
+            Event { t_s: 2.0, what: What::Button { button: Button::Left, down: true } },
             r#"{"t":2.0,"event":"button","button":"left","down":true}"#,
         ),
-        (Event::Scroll { t_s: 0.1, lines: -3 }, r#"{"t":0.1,"event":"scroll","lines":-3}"#),
-        (Event::Zero { t_s: 3.5, fx_n: 0.02, fy_n: -0.01 }, r#"{"t":3.5,"event":"zero","Fx_N":0.02,"Fy_N":-0.01}"#),
-        (Event::Drag { t_s: 3.5, fx_n: 0.5, fy_n: 0.25 }, r#"{"t":3.5,"event":"drag","Fx_N":0.5,"Fy_N":0.25}"#),
-        (Event::Ready { t_s: 0.0 }, r#"{"t":0.0,"event":"ready"}"#),
-        (Event::Lost { t_s: 9.0, reason: Reason::Watchdog }, r#"{"t":9.0,"event":"lost","reason":"watchdog"}"#),
+        (Event { t_s: 0.1, what: What::Scroll { lines: -3 } }, r#"{"t":0.1,"event":"scroll","lines":-3}"#),
         (
-            Event::Move { t_s: -1.234_567_890_123_456_7e-300, dx: i32::MIN, dy: i32::MAX },
+            Event { t_s: 3.5, what: What::Zero { fx_n: 0.02, fy_n: -0.01 } },
+            r#"{"t":3.5,"event":"zero","Fx_N":0.02,"Fy_N":-0.01}"#,
+        ),
+        (
+            Event { t_s: 3.5, what: What::Drag { fx_n: 0.5, fy_n: 0.25 } },
+            r#"{"t":3.5,"event":"drag","Fx_N":0.5,"Fy_N":0.25}"#,
+        ),
+        (Event { t_s: 0.0, what: What::Ready }, r#"{"t":0.0,"event":"ready"}"#),
+        (
+            Event { t_s: 9.0, what: What::Lost { reason: Reason::Watchdog } },
+            r#"{"t":9.0,"event":"lost","reason":"watchdog"}"#,
+        ),
+        (
+            Event { t_s: -1.234_567_890_123_456_7e-300, what: What::Move { dx: i32::MIN, dy: i32::MAX } },
             r#"{"t":-1.2345678901234568e-300,"event":"move","dx":-2147483648,"dy":2147483647}"#,
         ),
     ];

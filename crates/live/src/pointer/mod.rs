@@ -27,7 +27,7 @@ mod user;
 
 pub use config::{Click, Config, ConfigFault, ConfigFaults, Mode};
 pub use decide::Pointer;
-pub use event::{Button, Event, Reason};
+pub use event::{Button, Event, Reason, What};
 #[cfg(target_os = "linux")]
 pub use sink::{Uinput, UinputFault};
 pub use sink::{UinputState, uinput_state};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lunula_live::pointer::{Config, Event, Pointer, Reason, Uinput};
+use lunula_live::pointer::{Config, Event, Pointer, Reason, Uinput, What};
 use lunula_predictor::{Contact, FORCES};
 use serde::Serialize;
 
@@ -121,7 +121,7 @@ impl PointerOutput {
         let Self { pointer, events, uinput, counts, .. } = self;
         let mut fault = None;
         let mut hears = |event: Event| {
-            counts.count(&event);
+            counts.count(event.what);
             if let Some(events) = events {
                 let written = events.write(|line| event.write_json(line));
                 fault = written.err().or(fault.take());
@@ -139,17 +139,17 @@ impl PointerOutput {
 }
 
 impl PointerCounts {
-    fn count(&mut self, event: &Event) {
-        match *event {
-            Event::Move { dx, dy, .. } => {
+    fn count(&mut self, what: What) {
+        match what {
+            What::Move { dx, dy } => {
                 self.moves += 1;
                 self.x_counts += i64::from(dx);
                 self.y_counts += i64::from(dy);
             }
-            Event::Button { down, .. } => self.clicks += u64::from(down),
-            Event::Scroll { lines, .. } => self.scrolled += u64::from(lines.unsigned_abs()),
-            Event::Lost { .. } => self.let_go += 1,
-            Event::Zero { .. } | Event::Drag { .. } | Event::Ready { .. } => {}
+            What::Button { down, .. } => self.clicks += u64::from(down),
+            What::Scroll { lines } => self.scrolled += u64::from(lines.unsigned_abs()),
+            What::Lost { .. } => self.let_go += 1,
+            What::Zero { .. } | What::Drag { .. } | What::Ready => {}
         }
     }
 }

@@ -23,7 +23,7 @@ mod zero;
 pub(super) use gain::{off_screen, shear_for_n};
 
 use super::config::Config;
-use super::event::{Button, Event, Reason};
+use super::event::{Button, Event, Reason, What};
 use click::{Clicks, Turn};
 use filter::OneEuro;
 use motion::Motion;
@@ -205,7 +205,7 @@ impl Pointer {
                 return;
             }
             self.armed = true;
-            out(Event::Ready { t_s });
+            out(Event { t_s, what: What::Ready });
         }
         if dt_s == 0.0 {
             self.filter.reset();
@@ -243,13 +243,13 @@ impl Pointer {
     ) {
         let lines = self.scroll.step(&self.config, t_s, dt_s, bend_deg);
         if lines != 0 {
-            out(Event::Scroll { t_s, lines });
+            out(Event { t_s, what: What::Scroll { lines } });
         }
         let bends = |bend_deg: f64| scroll::beyond_rest_deg(&self.config, bend_deg) != 0.0;
         if self.config.scroll && bend_deg.is_some_and(bends) {
             self.zero.stop();
         } else if let Some([fx_n, fy_n]) = self.zero.step(&self.config, t_s, shear_n, pressing_n) {
-            out(Event::Zero { t_s, fx_n, fy_n });
+            out(Event { t_s, what: What::Zero { fx_n, fy_n } });
         }
     }
 
@@ -270,35 +270,35 @@ impl Pointer {
             Turn::Down | Turn::Up => {
                 self.motion.take_back(t_s);
                 self.report_moves(t_s, out);
-                out(Event::Button { t_s, button, down: turn == Turn::Down });
+                out(Event { t_s, what: What::Button { button, down: turn == Turn::Down } });
             }
             Turn::Tap => {
-                out(Event::Button { t_s, button, down: true });
-                out(Event::Button { t_s, button, down: false });
+                out(Event { t_s, what: What::Button { button, down: true } });
+                out(Event { t_s, what: What::Button { button, down: false } });
             }
             Turn::Drag | Turn::DownAndDrag => {
                 if turn == Turn::DownAndDrag {
-                    out(Event::Button { t_s, button, down: true });
+                    out(Event { t_s, what: What::Button { button, down: true } });
                 }
                 self.motion.drag(on_screen_n);
-                out(Event::Drag { t_s, fx_n, fy_n });
+                out(Event { t_s, what: What::Drag { fx_n, fy_n } });
             }
         }
     }
 
     fn report_moves(&mut self, t_s: f64, out: &mut impl FnMut(Event)) {
         if let Some([dx, dy]) = self.motion.whole() {
-            out(Event::Move { t_s, dx, dy });
+            out(Event { t_s, what: What::Move { dx, dy } });
         }
     }
 
     /// The button goes up, and nothing happens until the finger is seen lifted.
     fn let_go(&mut self, t_s: f64, reason: Reason, out: &mut impl FnMut(Event)) {
         if self.clicks.is_down() {
-            out(Event::Button { t_s, button: Button::Left, down: false });
+            out(Event { t_s, what: What::Button { button: Button::Left, down: false } });
         }
         if self.armed {
-            out(Event::Lost { t_s, reason });
+            out(Event { t_s, what: What::Lost { reason } });
         }
         (self.armed, self.touches, self.valid_s) = (false, false, f64::NAN);
         self.filter.reset();

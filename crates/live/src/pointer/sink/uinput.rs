@@ -8,7 +8,7 @@ use std::io;
 use evdev::uinput::VirtualDevice;
 use evdev::{AttributeSet, EventType, InputEvent, KeyCode, RelativeAxisCode};
 
-use super::super::event::Event;
+use super::super::event::{Event, What};
 use super::state::UinputState;
 
 /// The mouse's name, as the desktop's settings show it.
@@ -62,15 +62,13 @@ impl Uinput {
 fn kernel_events(event: &Event) -> ([InputEvent; 2], usize) {
     let relative = |axis: RelativeAxisCode, value: i32| InputEvent::new(EventType::RELATIVE.0, axis.0, value);
     let none = relative(RelativeAxisCode::REL_X, 0);
-    match *event {
-        Event::Move { dx, dy, .. } => {
-            ([relative(RelativeAxisCode::REL_X, dx), relative(RelativeAxisCode::REL_Y, dy)], 2)
-        }
-        Event::Scroll { lines, .. } => ([relative(RelativeAxisCode::REL_WHEEL, lines), none], 1),
-        Event::Button { down, .. } => {
+    match event.what {
+        What::Move { dx, dy } => ([relative(RelativeAxisCode::REL_X, dx), relative(RelativeAxisCode::REL_Y, dy)], 2),
+        What::Scroll { lines } => ([relative(RelativeAxisCode::REL_WHEEL, lines), none], 1),
+        What::Button { down, .. } => {
             ([InputEvent::new(EventType::KEY.0, KeyCode::BTN_LEFT.0, i32::from(down)), none], 1)
         }
-        Event::Zero { .. } | Event::Drag { .. } | Event::Ready { .. } | Event::Lost { .. } => ([none, none], 0),
+        What::Zero { .. } | What::Drag { .. } | What::Ready | What::Lost { .. } => ([none, none], 0),
     }
 }
 
@@ -85,9 +83,9 @@ mod tests {
         match (uinput_state(), Uinput::open()) {
             (UinputState::Ready, mouse) => {
                 let mut mouse = mouse.unwrap();
-                mouse.write(&Event::Move { t_s: 0.0, dx: 3, dy: -2 }).unwrap();
-                mouse.write(&Event::Move { t_s: 0.0, dx: -3, dy: 2 }).unwrap();
-                mouse.write(&Event::Ready { t_s: 0.0 }).unwrap();
+                mouse.write(&Event { t_s: 0.0, what: What::Move { dx: 3, dy: -2 } }).unwrap();
+                mouse.write(&Event { t_s: 0.0, what: What::Move { dx: -3, dy: 2 } }).unwrap();
+                mouse.write(&Event { t_s: 0.0, what: What::Ready }).unwrap();
             }
             (state, Err(why @ UinputFault::Unavailable(_))) => {
                 let text = why.to_string();
@@ -105,9 +103,9 @@ mod tests {
             events[..count].iter().map(|event| (event.event_type().0, event.code(), event.value())).collect::<Vec<_>>()
         };
         // linux/input-event-codes.h: EV_KEY 1, EV_REL 2, REL_X 0, REL_Y 1, REL_WHEEL 8, BTN_LEFT 0x110.
-        assert_eq!(of(Event::Move { t_s: 0.0, dx: 5, dy: -7 }), [(2, 0, 5), (2, 1, -7)]);
-        assert_eq!(of(Event::Scroll { t_s: 0.0, lines: -2 }), [(2, 8, -2)]);
-        assert_eq!(of(Event::Button { t_s: 0.0, button: Button::Left, down: true }), [(1, 0x110, 1)]);
-        assert_eq!(of(Event::Lost { t_s: 0.0, reason: Reason::Lost }), []);
+        assert_eq!(of(Event { t_s: 0.0, what: What::Move { dx: 5, dy: -7 } }), [(2, 0, 5), (2, 1, -7)]);
+        assert_eq!(of(Event { t_s: 0.0, what: What::Scroll { lines: -2 } }), [(2, 8, -2)]);
+        assert_eq!(of(Event { t_s: 0.0, what: What::Button { button: Button::Left, down: true } }), [(1, 0x110, 1)]);
+        assert_eq!(of(Event { t_s: 0.0, what: What::Lost { reason: Reason::Lost } }), []);
     }
 }

@@ -27,7 +27,7 @@ fn a_touch_settles_before_it_moves() {
     for settle_s in [0.0, 0.1, 0.5] {
         let mut bench = Bench::new(Config { settle_s, ..Config::default() });
         bench.hold(0.5, AIR).hold(1.5, [2.0, 0.0, 0.9]);
-        let first_s = bench.events.iter().find(|event| event.word() == "move").unwrap().t_s();
+        let first_s = bench.events.iter().find(|event| matches!(event.what, What::Move { .. })).unwrap().t_s;
         // The second sample of the touch is the first that is steady; then the shear passes its filter.
         assert!((0.0..=0.05).contains(&(first_s - 0.51 - settle_s)), "{settle_s}: {first_s}");
     }
@@ -156,7 +156,7 @@ fn bending_scrolls_in_the_air_only() {
     assert_eq!(bench.count("scroll"), 0, "within the dead zone");
     bench.bend(2.0, AIR, 45.0);
     let lines = |bench: &Bench| -> i32 {
-        bench.events.iter().map(|event| if let Event::Scroll { lines, .. } = event { *lines } else { 0 }).sum()
+        bench.events.iter().map(|event| if let What::Scroll { lines } = event.what { lines } else { 0 }).sum()
     };
     // 10 degrees beyond at 0.3 lines/s per degree, flexion is down.
     assert!((lines(&bench) + 6).abs() <= 1, "{}", lines(&bench));
@@ -177,7 +177,7 @@ fn bending_scrolls_in_the_air_only() {
 fn the_zero_follows_a_finger_in_the_air_and_no_other() {
     let off = [0.3, -0.2];
     let zeros = |bench: &Bench| -> Vec<[f64; 2]> {
-        let zero = |event: &Event| if let Event::Zero { fx_n, fy_n, .. } = *event { Some([fx_n, fy_n]) } else { None };
+        let zero = |event: &Event| if let What::Zero { fx_n, fy_n } = event.what { Some([fx_n, fy_n]) } else { None };
         bench.events.iter().filter_map(zero).collect()
     };
     let mut bench = Bench::new(Config::default());

@@ -177,7 +177,10 @@ fn a_watchdogs_release_has_the_time_at_which_it_was_due() {
     let events = &mut bench.events;
     bench.pointer.advance(last_s + 7.0, &mut |event| events.push(event));
     assert_eq!(bench.turns().last(), Some(&(last_s + config.watchdog_s, false)));
-    assert_eq!(bench.events.last(), Some(&Event::Lost { t_s: last_s + config.watchdog_s, reason: Reason::Watchdog }));
+    assert_eq!(
+        bench.events.last(),
+        Some(&Event { t_s: last_s + config.watchdog_s, what: What::Lost { reason: Reason::Watchdog } })
+    );
     assert_eq!(bench.pointer.due_s(), None);
 }
 
@@ -230,7 +233,7 @@ fn a_reset_lets_go_and_begins_from_nothing() {
     let events = &mut bench.events;
     bench.pointer.reset(&mut |event| events.push(event));
     assert_eq!(bench.downs(), [true, false]);
-    assert!(matches!(bench.events.last(), Some(Event::Lost { reason: Reason::End, .. })));
+    assert!(matches!(bench.events.last(), Some(Event { what: What::Lost { reason: Reason::End }, .. })));
     let events = &mut Vec::new();
     bench.pointer.reset(&mut |event| events.push(event));
     assert_eq!(*events, []);

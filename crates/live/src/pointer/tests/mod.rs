@@ -4,7 +4,7 @@ mod behaviour;
 mod exact;
 mod faults;
 
-use super::{Config, Event, Pointer};
+use super::{Config, Event, Pointer, What};
 
 /// Samples a second.
 const RATE_HZ: f64 = 100.0;
@@ -62,16 +62,16 @@ impl Bench {
 
     /// The sum of the moves.
     fn at(&self) -> [i64; 2] {
-        self.events.iter().fold([0; 2], |[x, y], event| match *event {
-            Event::Move { dx, dy, .. } => [x + i64::from(dx), y + i64::from(dy)],
+        self.events.iter().fold([0; 2], |[x, y], event| match event.what {
+            What::Move { dx, dy } => [x + i64::from(dx), y + i64::from(dy)],
             _ => [x, y],
         })
     }
 
     /// When the button went down and up.
     fn turns(&self) -> Vec<(f64, bool)> {
-        let turns = self.events.iter().filter_map(|event| match *event {
-            Event::Button { t_s, down, .. } => Some((t_s, down)),
+        let turns = self.events.iter().filter_map(|event| match event.what {
+            What::Button { down, .. } => Some((event.t_s, down)),
             _ => None,
         });
         turns.collect()
@@ -84,7 +84,7 @@ impl Bench {
 
     /// The events of a word.
     fn count(&self, word: &str) -> usize {
-        self.events.iter().filter(|event| event.word() == word).count()
+        self.events.iter().filter(|event| serde_json::to_value(event).unwrap()["event"] == word).count()
     }
 }
 

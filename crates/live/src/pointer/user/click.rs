@@ -3,7 +3,7 @@
 use super::RATE_HZ;
 use super::hand::Hand;
 use super::person::Person;
-use crate::pointer::{Config, Event, Pointer};
+use crate::pointer::{Config, Pointer, What};
 
 /// From one click to the next, s: the pointer has settled again.
 const APART_S: f64 = 2.0;
@@ -56,9 +56,9 @@ pub(super) fn click_displacement(
             samples += 1;
             let force_n = if t_s < LIFTED_S { [0.0; 3] } else { hand.force_n(t_s, [0.0; 2]) };
             let [fx_n, fy_n, fz_n] = sensor(t_s, force_n);
-            pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event {
-                Event::Move { dx, dy, .. } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
-                Event::Button { down: true, .. } => {
+            pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event.what {
+                What::Move { dx, dy } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
+                What::Button { down: true, .. } => {
                     *count += 1;
                     down.get_or_insert(*at);
                 }

@@ -4,7 +4,7 @@ use super::RATE_HZ;
 use super::hand::Hand;
 use super::person::Person;
 use super::sensor::Noise;
-use crate::pointer::{Config, Event, Pointer};
+use crate::pointer::{Config, Event, Pointer, What};
 use crate::switch::{Rate, rate_per_hour};
 
 /// The finger is in the air for so long at the beginning, s.
@@ -49,7 +49,7 @@ pub(super) fn rest_drift(
         let t_s = sample as f64 / RATE_HZ;
         let [fx_n, fy_n, fz_n] = sensor(t_s, if t_s < LIFTED_S { [0.0; 3] } else { force_n });
         pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| {
-            if let Event::Move { t_s, dx, dy } = event
+            if let Event { t_s, what: What::Move { dx, dy } } = event
                 && t_s >= LIFTED_S + SETTLES_S
             {
                 counts += u64::from(dx.unsigned_abs()) + u64::from(dy.unsigned_abs());
@@ -76,7 +76,7 @@ pub(super) fn inadvertent_clicks(
         let force_n = if t_s < LIFTED_S { [0.0; 3] } else { hand.force_n(t_s, sway.step(RATE_HZ.recip())) };
         let [fx_n, fy_n, fz_n] = sensor(t_s, force_n);
         pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| {
-            clicks += u64::from(matches!(event, Event::Button { down: true, .. }));
+            clicks += u64::from(matches!(event.what, What::Button { down: true, .. }));
         });
     }
     Inadvertent { clicks, rate: rate_per_hour(clicks, hours) }

@@ -8,7 +8,7 @@ use super::RATE_HZ;
 use super::hand::{Hand, Target};
 use super::person::Person;
 use super::task::Task;
-use crate::pointer::{Click, Config, Event, Mode, Pointer};
+use crate::pointer::{Click, Config, Mode, Pointer, What};
 
 /// W_e of an SD: 96 % of normal end points are within (the source's).
 const WIDTH_OF_SD: f64 = 4.133;
@@ -123,9 +123,9 @@ impl<S: FnMut(f64, [f64; 3]) -> [f64; 3]> Desk<S> {
         self.samples += 1;
         let [fx_n, fy_n, fz_n] = (self.sensor)(t_s, force_n);
         let (at, mut click) = (&mut self.at, None);
-        self.pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event {
-            Event::Move { dx, dy, .. } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
-            Event::Button { down: true, .. } => click = Some(at.map(|count| count as f64)),
+        self.pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event.what {
+            What::Move { dx, dy } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
+            What::Button { down: true, .. } => click = Some(at.map(|count| count as f64)),
             _ => {}
         });
         click
