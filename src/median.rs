@@ -1,4 +1,4 @@
-//! The middle of some numbers.
+//! The middle and the ends of some numbers.
 
 use std::cmp::Ordering;
 
@@ -39,6 +39,11 @@ pub(crate) fn median_of<T: Number>(values: impl IntoIterator<Item = T>) -> Optio
     median(&mut values.into_iter().collect::<Vec<T>>())
 }
 
+/// The least and the greatest; NaN is passed over. Of none `[INFINITY, NEG_INFINITY]`.
+pub(crate) fn ends(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +54,11 @@ mod tests {
         assert_eq!(median_of([4_usize, 1, 3, 2]), Some(3));
         assert_eq!(median_of([f32::NAN, -1.0, -2.0]), Some(-1.0));
         assert_eq!(median::<f64>(&mut []), None);
+    }
+
+    #[test]
+    fn ends_of_numbers_pass_over_those_that_are_none() {
+        assert_eq!(ends([2.0, f64::NAN, -1.0]), [-1.0, 2.0]);
+        assert_eq!(ends([]), [f64::INFINITY, f64::NEG_INFINITY]);
     }
 }

@@ -67,9 +67,4 @@ impl Certificate {
             notes,
         }
     }
-
-    /// As it is written.
-    pub(super) fn text(&self) -> String {
-        serde_json::to_string_pretty(self).expect("plain data") + "\n"
-    }
 }

@@ -14,10 +14,19 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use serde::Serialize;
 use thiserror::Error;
 
 pub use hidden::clear as clear_leftovers;
 pub use staging::{Places, Staging};
+
+/// A value as the text of a JSON file.
+///
+/// # Panics
+/// Keys that are no text: results are plain data with names as keys.
+pub(crate) fn json_text(value: &impl Serialize) -> String {
+    serde_json::to_string_pretty(value).expect("plain data with names as keys") + "\n"
+}
 
 /// Why results can't be written.
 #[derive(Debug, Error)]

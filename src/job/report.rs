@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::work::{Made, Quality};
 use super::{Said, Watch};
-use crate::files::{Places, WriteError};
+use crate::files::{Places, WriteError, json_text};
 use crate::stages::{Stage, Stages};
 
 /// What a run did; `F` holds the figures of one kind of job.
@@ -108,7 +108,7 @@ impl<F: Serialize> Report<F> {
     /// Never: figures are plain data.
     #[must_use]
     pub fn text(&self) -> String {
-        serde_json::to_string_pretty(self).expect("plain data with names as keys") + "\n"
+        json_text(self)
     }
 
     /// Warns of pictures that the run drew which was reported in `at` before, and this one doesn't.

@@ -9,6 +9,7 @@ use super::read::{Contrast, Given, Place};
 use super::run::report::{LayoutFigures, MethodFigures};
 use super::solve::Method;
 use crate::figure::{Chart, Item, Point, draw_charts};
+use crate::median::ends;
 use crate::nail::Positions;
 
 /// A map is drawn in at most so many boxes a side.
@@ -79,7 +80,7 @@ type Shade = ([f64; 4], f64);
 /// Each candidate's own error, as a box that reaches half-way to its neighbours.
 fn of_candidates(given: &Given, problem: &LayoutProblem, half: [f64; 2]) -> Vec<Shade> {
     let costs: Vec<f64> = (0..given.places.len()).map(|place| problem.cost(&[place])).collect();
-    let (low, high) = ends(&costs);
+    let [low, high] = ends(costs.iter().copied());
     let nearest = |of: fn(&Place) -> f64| -> f64 {
         let mut all: Vec<f64> = given.places.iter().map(of).collect();
         all.sort_by(f64::total_cmp);
@@ -107,17 +108,13 @@ fn of_contrast(contrast: &Contrast, half: [f64; 2]) -> Vec<Shade> {
     };
     let cells = (0..n * n).filter_map(|k| Some((k / n, k % n, block(k / n, k % n)?)));
     let cells: Vec<(usize, usize, f64)> = cells.collect();
-    let (_, high) = ends(&cells.iter().map(|cell| cell.2).collect::<Vec<_>>());
+    let [_, high] = ends(cells.iter().map(|cell| cell.2));
     let edge = |k: usize| contrast.margin * (2.0 * k as f64 / n as f64 - 1.0);
     let shade = |&(row, column, sd): &(usize, usize, f64)| {
         let ends = [half[0] * edge(column), -half[1] * edge(row + 1), half[0] * edge(column + 1), -half[1] * edge(row)];
         (ends, sd / high.max(1e-12))
     };
     cells.iter().map(shade).collect()
-}
-
-fn ends(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
 }
 
 /// Draws errors of persons left out, where there are any, with intervals; else of the rows that layouts were chosen by.
@@ -133,7 +130,7 @@ pub(super) fn draw_errors(figures: &LayoutFigures, [png, svg]: &[PathBuf; 2]) ->
     ];
     let ks: Vec<f64> =
         figures.methods.iter().filter(|one| one.method == Method::Best).map(|one| one.k as f64).collect();
-    let (first, last) = ends(&ks);
+    let [first, last] = ends(ks);
     for (at, (method, name, colour, width)) in methods.into_iter().enumerate() {
         let own: Vec<&MethodFigures> = figures.methods.iter().filter(|one| one.method == method).collect();
         // Side by side, or the marks would hide each other.

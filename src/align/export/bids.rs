@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::{ANGLE_DECIMALS, ExportError, TIME_DECIMALS, fixed};
 use crate::align::{Posture, Tie};
-use crate::files::Places;
+use crate::files::{Places, json_text};
 use crate::input;
 use crate::median::median_of;
 
@@ -86,7 +86,7 @@ pub(crate) fn bids(
     places.look_after(root);
     let stands = |name: &str| std::fs::symlink_metadata(root.join(name)).is_ok();
     if !stands("dataset_description.json") {
-        files.push((root.join("dataset_description.json"), pretty(&description())));
+        files.push((root.join("dataset_description.json"), json_text(&description())));
     }
     if !["README", "README.md", "README.rst", "README.txt"].iter().any(|name| stands(name)) {
         files.push((root.join("README"), README.to_owned()));
@@ -96,7 +96,7 @@ pub(crate) fn bids(
     }
     let file = |ending: &str| root.join(names.folder()).join(format!("{}_{ending}", names.stem()));
     let sidecar = sidecar(&file("motion.json"), names, &times_s, &channels)?;
-    files.push((file("motion.json"), pretty(&sidecar)));
+    files.push((file("motion.json"), json_text(&sidecar)));
     files.push((file("channels.tsv"), channels.table(posture)));
     files.push((file("motion.tsv"), channels.rows(posture, &times_s)));
     for (path, text) in &files {
@@ -214,10 +214,6 @@ const README: &str = "Joint angles of a finger, measured in videos of coloured m
     recorded along with the video (photodiodes, forces), in seconds. Angles are in degrees, positive in flexion; n/a \
     where a marker \n\
     was not seen. Nothing is interpolated.\n";
-
-fn pretty(value: &serde_json::Value) -> String {
-    serde_json::to_string_pretty(value).expect("plain data") + "\n"
-}
 
 /// `participants.tsv` with this subject; none where it stands so.
 fn participants(path: &Path, subject: &str) -> Result<Option<String>, ExportError> {

@@ -11,7 +11,7 @@ use crate::align::options::{AlignInputs, AlignOptions, AlignOutputs};
 use crate::align::posture::Posture;
 use crate::align::run::report::AlignReport;
 use crate::align::tie::Tie;
-use crate::files::{Places, beside};
+use crate::files::{Places, beside, json_text};
 use crate::log::Samples;
 use crate::table::{Column, TableWriter, Value};
 
@@ -53,7 +53,7 @@ impl Results {
             columns.extend(posture.joints.iter().map(|j| Column::rounded(format!("{j}{ending}"), ANGLE_DECIMALS)));
         }
         columns.extend(TEXTS.map(Column::text));
-        let text = certificate.text();
+        let text = json_text(&certificate);
         let at = self.places.place(path)?;
         let mut table = TableWriter::create(&at, path, columns, &facts(&text))?;
         let [subject, session] = [&options.subject, &options.session].map(|name| name.as_deref().unwrap_or_default());

@@ -8,7 +8,7 @@ use super::zero::zero_s;
 use super::{Tie, TieMethod};
 use crate::align::posture::{ClockColumns, Posture};
 use crate::clock;
-use crate::median::{SD_OF_MAD, median_of};
+use crate::median::{SD_OF_MAD, ends, median_of};
 use crate::timebase::Timebase;
 
 /// Resolutions that clocks have, seconds.
@@ -33,13 +33,12 @@ pub(crate) fn by_clock(
     } else {
         tie.warnings.push(ONLY_A_LINE.to_owned());
     }
-    let ends = |times: &mut dyn Iterator<Item = f64>| {
-        let ends =
-            times.filter(|t| t.is_finite()).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], t| [a.min(t), b.max(t)]);
+    let known = |times: &[f64]| {
+        let ends = ends(times.iter().copied().filter(|t| t.is_finite()));
         (ends[0] <= ends[1]).then_some(ends)
     };
-    let video_s = ends(&mut posture.time_s.iter().copied()).ok_or("the table of angles has no row with a time")?;
-    let log_s = ends(&mut log_time_s.iter().copied()).ok_or("the log has no row with a time")?;
+    let video_s = known(&posture.time_s).ok_or("the table of angles has no row with a time")?;
+    let log_s = known(log_time_s).ok_or("the log has no row with a time")?;
     let zero = match clock_zero_s {
         Some(zero_s) if !zero_s.is_finite() => {
             return Err(format!("the log's time when the clock shows zero is {zero_s} s; it must be a number"));

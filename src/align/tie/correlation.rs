@@ -8,6 +8,7 @@ use crate::align::Posture;
 use crate::clock::USUAL_DRIFT;
 use crate::job::number;
 use crate::log::Samples;
+use crate::median::ends;
 use crate::timebase::Timebase;
 
 /// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves.
@@ -118,11 +119,8 @@ fn drift_of(found: &Correlated) -> Option<[f64; 2]> {
 
 /// The video's time in the middle of where both have rows.
 fn middle_of_overlap(video_s: &[f64], log_s: &[f64], offset_s: f64) -> f64 {
-    let ends = |times: &[f64]| {
-        let finite = times.iter().copied().filter(|t| t.is_finite());
-        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], t| [a.min(t), b.max(t)])
-    };
-    let (video, log) = (ends(video_s), ends(log_s));
+    let finite = |times: &[f64]| ends(times.iter().copied().filter(|t| t.is_finite()));
+    let (video, log) = (finite(video_s), finite(log_s));
     0.5 * (video[0].max(log[0] - offset_s) + video[1].min(log[1] - offset_s))
 }
 

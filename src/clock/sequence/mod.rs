@@ -31,6 +31,7 @@ pub use fault::ClockFault;
 
 use self::consensus::{Agreed, Seen};
 use self::polygon::{Hulls, Moments, Point, moments};
+use crate::median::ends;
 use crate::timebase::Timebase;
 
 /// A clock drifts no more than this: files whose frame times are those of 30 frames a second though 29.97 were taken
@@ -114,8 +115,7 @@ impl ClockFit {
     /// The least and the greatest that the clock may count at the video's time `time_s`, seconds.
     #[must_use]
     pub fn bounds_s(&self, time_s: f64) -> [f64; 2] {
-        let at = self.corners.iter().map(|corner| self.place.clock_s(corner, time_s));
-        at.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+        ends(self.corners.iter().map(|corner| self.place.clock_s(corner, time_s)))
     }
 }
 
@@ -202,9 +202,7 @@ pub fn fit(
         // The delay may be anything that the screen allows, and another at the end than at the beginning.
         moments.widen(&of(&corners));
     }
-    let extent = |of: &dyn Fn(&Point) -> f64| {
-        corners.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], at| [a.min(at), b.max(at)])
-    };
+    let extent = |of: &dyn Fn(&Point) -> f64| ends(corners.iter().map(of));
     let timebase = timebase(&moments, &place);
     let residual = |(&time_s, read_s): (&f64, &Option<f64>)| {
         let middle_s = (*read_s)? + 0.5 * (resolution_s + screen.estimate_s);

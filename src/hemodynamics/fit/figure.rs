@@ -5,6 +5,7 @@ use std::path::Path;
 use super::recording::ReadRecording;
 use crate::figure::{Chart, Item, draw_panels};
 use crate::hemodynamics::figures::{N_PER_CM2, chart, over_time};
+use crate::median::ends;
 
 /// Panels in a row, and the width of each.
 const COLUMNS: usize = 2;
@@ -44,8 +45,7 @@ fn panel(title: &str, read: &ReadRecording, measured: &[f64], fitted: &[f64]) ->
         None => {
             // The load that changes more is the axis.
             let span = |k: usize| {
-                let of = |ends: (f64, f64), both: &[f64; 2]| (ends.0.min(both[k]), ends.1.max(both[k]));
-                let (low, high) = read.pressed_pa.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of);
+                let [low, high] = ends(read.pressed_pa.iter().map(|both| both[k]));
                 high - low
             };
             let axis = usize::from(span(1) > span(0));

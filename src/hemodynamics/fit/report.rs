@@ -6,6 +6,7 @@ use lunula_hemodynamics::noise::Slow;
 use lunula_hemodynamics::{Combination, Group, Rival, Stop};
 use serde::Serialize;
 
+use crate::files::json_text;
 use crate::job::Report;
 
 /// A photodiode's offset and scaling.
@@ -118,7 +119,7 @@ pub(super) fn result_text(report: &FitReport) -> String {
     for recording in found["recordings"].as_array_mut().into_iter().flatten() {
         without(recording, &["file"]);
     }
-    serde_json::to_string_pretty(&found).expect("plain data") + "\n"
+    json_text(&found)
 }
 
 /// Why a fit stopped, in words, and whether that is convergence.

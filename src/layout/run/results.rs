@@ -1,7 +1,7 @@
 //! `layout.json` and `layout.csv`.
 
 use super::report::LayoutFigures;
-use crate::files::Places;
+use crate::files::{Places, json_text};
 use crate::layout::error::LayoutError;
 use crate::table::{Column, TableWriter, Value};
 
@@ -12,8 +12,7 @@ pub(super) const TABLE: &str = "layout.csv";
 
 /// Writes both.
 pub(super) fn write(figures: &LayoutFigures, places: &mut Places) -> Result<(), LayoutError> {
-    let json = serde_json::to_string_pretty(&figures.chosen.positions).expect("plain data with names as keys") + "\n";
-    places.write(&figures.folder.join(POSITIONS), &json)?;
+    places.write(&figures.folder.join(POSITIONS), &json_text(&figures.chosen.positions))?;
     let path = figures.folder.join(TABLE);
     let mut columns = vec![Column::integer("k"), Column::text("method"), Column::number("error")];
     columns.extend(["left_out_error", "left_out_se", "left_out_low", "left_out_high"].map(Column::number));

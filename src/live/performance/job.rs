@@ -11,7 +11,7 @@ use super::read::{Row, Trials, read};
 use super::report::{PerformanceFigures, PerformanceReport};
 use super::tables::{MEANS, ROWS, write_means, write_rows};
 use super::{analysis, figures};
-use crate::files::Places;
+use crate::files::{Places, json_text};
 use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
 use crate::median::median_of;
@@ -60,8 +60,7 @@ pub fn run(
     watch.go_on()?;
     let figures = stages.time("figures of merit", || analysis::figures(name, &trials, course, baseline));
     let figures = PerformanceFigures { folder: folder.clone(), ..figures };
-    let json = serde_json::to_string_pretty(&figures).expect("plain data with names as keys") + "\n";
-    places.write(&folder.join(FIGURES), &json)?;
+    places.write(&folder.join(FIGURES), &json_text(&figures))?;
     stages.time("tables", || {
         write_means(&figures, folder, &mut places)?;
         if outputs.rows { write_rows(&trials, folder, &mut places) } else { Ok(()) }

@@ -13,7 +13,7 @@ use super::read::read;
 use super::report::{SkillFigures, SkillReport, TrialFigures};
 use super::summary;
 use super::table::{self, TABLE};
-use crate::files::Places;
+use crate::files::{Places, json_text};
 use crate::input::copies;
 use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
@@ -117,8 +117,7 @@ pub fn run(
         people,
         trials,
     };
-    let json = serde_json::to_string_pretty(&figures).expect("plain data with names as keys") + "\n";
-    places.write(&folder.join(FIGURES), &json)?;
+    places.write(&folder.join(FIGURES), &json_text(&figures))?;
     stages.time("table", || table::write(&figures, folder, &mut places))?;
     let mut pictures = Vec::new();
     if outputs.figures {

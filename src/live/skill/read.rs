@@ -6,6 +6,7 @@ use lunula_live::spread::Spread;
 use super::rows::{self, FORCE, Finger, Gate, Rows};
 use crate::live::error::LiveError;
 use crate::log::{Still, doubts};
+use crate::median::ends;
 use crate::predictor::DataFile;
 
 /// More trials of a recording are something else: a column was mistaken.
@@ -191,7 +192,7 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
     let angle = |(name, values): &(String, Vec<f64>)| {
         let bent = || own.iter().filter(|row| gate(**row) == Some(Gate::Bending)).map(|row| values[*row]);
         let known = bent().filter(|value| value.is_finite());
-        let ends = known.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)]);
+        let ends = ends(known);
         Some((name.clone(), Spread::of(bent())?, ends))
     };
     let fz_n: Vec<f64> = force_n.iter().map(|force_n| -force_n).collect();

@@ -7,6 +7,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::median::ends;
+
 /// A camera's focal length and its lens' coefficients; the optical axis meets the picture's middle.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Lens {
@@ -201,10 +203,7 @@ impl Mapping {
 
 /// The least and greatest of these steps in each row: to the right, down.
 pub(in crate::phantom) fn row_moves(moves: &[[f32; 2]], width: usize) -> Vec<[[f64; 2]; 2]> {
-    let range = |row: &[[f32; 2]], axis: usize| {
-        let steps = row.iter().map(|step| f64::from(step[axis]));
-        steps.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], step| [low.min(step), high.max(step)])
-    };
+    let range = |row: &[[f32; 2]], axis: usize| ends(row.iter().map(|step| f64::from(step[axis])));
     moves.chunks_exact(width).map(|row| [range(row, 0), range(row, 1)]).collect()
 }
 

@@ -11,6 +11,7 @@ use lunula_predictor::{Dataset, Deficient, LeastSquaresOptions, Recording, least
 use ndarray::{ArrayView1, ArrayView2, Axis, Slice, concatenate};
 
 use super::health::called;
+use crate::median::ends;
 
 /// The least that is called standing still, rows and seconds; and as rows of the rest for each unknown (assumed).
 const ROWS: usize = 20;
@@ -106,7 +107,7 @@ fn column(data: &Dataset, column: usize) -> ArrayView1<'_, f64> {
 fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>> {
     let values = column(data, k);
     let own = values.slice_axis(Axis(0), Slice::from(one.rows.clone()));
-    let ends = own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [v.min(low), v.max(high)]);
+    let ends = ends(own.iter().copied());
     let is_target = k >= data.inputs().len();
     let near = if is_target { NEAR_0 * (ends[1] - ends[0]) } else { 0.0 };
     // A transducer that hangs while the force grows shows the greatest of all.

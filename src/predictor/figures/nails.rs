@@ -9,6 +9,7 @@ use image::{Rgb, RgbImage};
 use lunula_predictor::Eigennails;
 
 use crate::figure::{Sheet, Tile, TilePicture};
+use crate::median::ends;
 use crate::predictor::data::cell;
 
 /// Side of a picture, pixels, about.
@@ -33,8 +34,7 @@ pub(in crate::predictor) fn draw_nails(
     let places: Option<Vec<[usize; 2]>> = names.iter().map(|name| cell(name)).collect();
     let Some(places) = places else { anyhow::bail!("the model reads columns that are no cells, such as C_00_00") };
     let basis = model.basis();
-    let [low, high] =
-        basis.mean().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
+    let [low, high] = ends(basis.mean().iter().copied());
     let grey = |value: f64| {
         let share = if high > low { (value - low) / (high - low) } else { 0.5 };
         Rgb([(255.0 * share + 0.5) as u8; 3])

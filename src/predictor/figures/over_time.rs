@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{Predicted, WIDTH, quantity, three_digits, unit};
 use crate::figure::{Chart, Item, MOST_BINS, Thinned, draw_charts};
-use crate::median::median_of;
+use crate::median::{ends, median_of};
 
 /// Height of a panel, pixels.
 const PANEL_PX: u32 = 300;
@@ -167,7 +167,7 @@ impl TimeLine {
             Item::Band { runs, .. } => runs.concat().iter().map(|p| p[2]).collect(),
             _ => Vec::new(),
         });
-        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+        let [low, high] = ends(values);
         if low.is_infinite() {
             return Vec::new();
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{Predicted, quantity, three_digits, unit};
 use crate::figure::{Chart, Item, draw_panels};
+use crate::median::ends;
 
 /// Width and height of a panel, pixels: the axes are square within it.
 const PANEL_PX: (u32, u32) = (536, 534);
@@ -48,10 +49,7 @@ pub(in crate::predictor) fn draw_scatter(
 
 /// One point in each place, the first; in the points' own order.
 fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    let ends = |of: usize| {
-        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[of]), high.max(p[of])])
-    };
-    let [x, y] = [ends(0), ends(1)];
+    let [x, y] = [0, 1].map(|of| ends(points.iter().map(|p| p[of])));
     let (low, high) = (x[0].min(y[0]), x[1].max(y[1]));
     let place = |value: f64| ((value / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0) * PLACES) as u32;
     let mut seen = std::collections::BTreeSet::new();

@@ -5,6 +5,7 @@
 use lunula_predictor::{Dataset, FrictionCone, Mismatch, Predictor, beside_model};
 use ndarray::{Array2, ArrayView1, ArrayView2};
 
+use crate::median::ends;
 use crate::predictor::data::looks;
 
 /// The share of rows outside of what was trained on from which it is said (assumed).
@@ -119,7 +120,7 @@ fn astray(measured: ArrayView1<'_, f64>, predicted: ArrayView1<'_, f64>, trained
     let [about, alone] = [both / other, mp / pp];
     let times = [(about, is_other(about, OTHER_UNIT)), (alone, is_gain && is_other(alone, OTHER_GAIN))];
     if let Some((times, _)) = times.into_iter().find(|(_, is_other)| follows && *is_other) {
-        let ends = pairs.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], (m, _)| [l.min(*m), h.max(*m)]);
+        let ends = ends(pairs.iter().map(|(m, _)| *m));
         let as_trained = trained.is_some_and(|trained| !is_other((ends[1] - ends[0]) / trained, OTHER_GAIN));
         let looks = if as_trained {
             ", and goes as far as in training: are the voltages in another unit, or do the recordings that the model \

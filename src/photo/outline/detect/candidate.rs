@@ -11,6 +11,7 @@ use super::picture::{Levels, RED, TONE, YELLOW};
 use super::refine::{Band, Path, RAYS, SIDE, fitted};
 use super::search::NAIL;
 use super::shape::{OutlineShape, TAPER};
+use crate::median::ends;
 use crate::photo::outline::{Axis, Outline};
 
 /// Three judges, each trained without a third of the scenes.
@@ -314,7 +315,7 @@ fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, OutlineShape) {
     };
     for _ in 0..3 {
         let q = turned(turn);
-        let (low, high) = span(&q, 1);
+        let [low, high] = span(&q, 1);
         let (mut sv, mut sm, mut svv, mut svm, mut n) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for i in 0..15 {
             let v = low + (high - low) * (0.15 + 0.7 * f64::from(i) / 14.0);
@@ -339,8 +340,8 @@ fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, OutlineShape) {
         }
     }
     let q = turned(turn);
-    let (left, right) = span(&q, 0);
-    let (low, high) = span(&q, 1);
+    let [left, right] = span(&q, 0);
+    let [low, high] = span(&q, 1);
     let (sin, cos) = turn.sin_cos();
     let (x, y) = ((left + right) / 2.0, (low + high) / 2.0);
     let shape = OutlineShape {
@@ -354,8 +355,8 @@ fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, OutlineShape) {
     (turn, shape)
 }
 
-fn span(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
-    points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[axis]), h.max(p[axis])))
+fn span(points: &[[f64; 2]], axis: usize) -> [f64; 2] {
+    ends(points.iter().map(|point| point[axis]))
 }
 
 #[allow(clippy::too_many_arguments)]
