@@ -11,11 +11,12 @@ use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
 use serde::Serialize;
 
 use super::doubts::elsewhere;
-use super::figures::draw_delays;
+use super::figures::{WIDTH, delays_chart};
 use super::flattery::flattery;
 use super::options::ContactOptions;
 use super::report::{note, of_another_model};
 use super::traces::{SwitchInputs, Traces, read_traces};
+use crate::figure::draw_charts;
 use crate::files::Staging;
 use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
@@ -82,7 +83,7 @@ pub fn evaluate_switch(
     report.warnings.extend(elsewhere(&read, &traces, &found));
     write_presses(&staging, &read, &found)?;
     if *figures {
-        let draw = |png: &Path, svg: &Path| draw_delays(&found, png, svg);
+        let draw = |png: &Path, svg: &Path| draw_charts(&[delays_chart(&found)], WIDTH, png, svg);
         report.pictures.push(stages.time("figures", || staging.draw("delays", draw))?);
     }
     let report = report.timed(&stages, start);

@@ -1,17 +1,15 @@
 //! The pictures of switches: delay against false switches, and how delays are spread.
 
-use std::path::Path;
-
 use lunula_live::switch::{Fate, Match};
 
 use super::report::TuneReport;
-use crate::figure::{Chart, Item, draw_charts};
+use crate::figure::{Chart, Item};
 
-const WIDTH: u32 = 900;
+pub(super) const WIDTH: u32 = 900;
 const HEIGHT: u32 = 520;
 
-/// Draws the curve of mean delay against false switches an hour, the goal and the choice.
-pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path, svg: &Path) -> anyhow::Result<()> {
+/// The curve of mean delay against false switches an hour, the goal and the choice.
+pub(super) fn curve_chart(title: &str, report: &TuneReport, goal: f64) -> Chart {
     // Beyond some multiples of the goal nobody looks.
     let farthest = report.curve.iter().map(|point| point.false_per_hour).fold(0.0, f64::max);
     let most = farthest.clamp(1.5 * goal, 20.0 * goal);
@@ -35,19 +33,18 @@ pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path
         let text = format!("on {} N, off {} N", report.switch.on_n, report.switch.off_n);
         items.push(Item::Label { at, text, colour: 1, above: true });
     }
-    let chart = Chart::new(
+    Chart::new(
         title,
         format!("false switches per hour (counted in {:.2} h)", report.chosen.hours),
         "mean delay of presses, ms",
         items,
         HEIGHT,
     )
-    .from_zero();
-    draw_charts(&[chart], WIDTH, png, svg)
+    .from_zero()
 }
 
-/// Draws the share of presses and of releases that came within a delay.
-pub(super) fn draw_delays(found: &[Vec<Match>], png: &Path, svg: &Path) -> anyhow::Result<()> {
+/// The share of presses and of releases that came within a delay.
+pub(super) fn delays_chart(found: &[Vec<Match>]) -> Chart {
     let known = || found.iter().flatten().filter(|one| one.fate == Fate::True);
     let on = known().filter_map(|one| Some(one.press_s - one.contact.filter(|contact| contact.start_known)?.start_s));
     let off = known().filter_map(|one| Some(one.release_s - one.contact.filter(|contact| contact.end_known)?.end_s));
@@ -66,6 +63,5 @@ pub(super) fn draw_delays(found: &[Vec<Match>], png: &Path, svg: &Path) -> anyho
         colour,
         width: 2,
     }));
-    let chart = Chart::new("Delays of the switch", "delay, ms", "share within it, %", items, HEIGHT).from_zero();
-    draw_charts(&[chart], WIDTH, png, svg)
+    Chart::new("Delays of the switch", "delay, ms", "share within it, %", items, HEIGHT).from_zero()
 }

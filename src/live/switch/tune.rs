@@ -10,11 +10,12 @@ use std::time::Instant;
 use lunula_live::switch::{Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
 
 use super::doubts::elsewhere;
-use super::figures::draw_curve;
+use super::figures::{WIDTH, curve_chart};
 use super::flattery::flattery;
 use super::options::TuneOptions;
 use super::report::{CurvePoint, TuneFigures, TuneReport, note};
 use super::traces::{SwitchInputs, Traces, read_traces};
+use crate::figure::draw_charts;
 use crate::files::{Places, beside};
 use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
@@ -85,8 +86,9 @@ pub fn tune_switch(
     places.write(out, &text)?;
     if *figures {
         let title = "Mean delay of presses against false switches";
-        let drawn = places.draw(out, PICTURE, |png, svg| {
-            stages.time("figures", || draw_curve(title, &report, options.false_per_hour, png, svg))
+        let drawn = stages.time("figures", || {
+            let chart = curve_chart(title, &report, options.false_per_hour);
+            places.draw(out, PICTURE, |png, svg| draw_charts(&[chart], WIDTH, png, svg))
         })?;
         report.pictures.push(drawn);
     }

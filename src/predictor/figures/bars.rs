@@ -50,19 +50,11 @@ pub(in crate::predictor) struct MagnitudeBin {
     pub rmse: Vec<Option<f64>>,
 }
 
-/// Draws bars in groups.
+/// Draws charts of bars, one below the other.
 ///
 /// # Errors
 /// A file that can't be written.
-pub fn draw_bars(bars: &Bars, png: &Path, svg: &Path) -> anyhow::Result<()> {
-    draw_charts(&[chart(bars)], WIDTH, png, svg)
-}
-
-/// Draws several charts of bars, one below the other.
-///
-/// # Errors
-/// A file that can't be written.
-pub(in crate::predictor) fn draw_bar_charts(all: &[Bars], png: &Path, svg: &Path) -> anyhow::Result<()> {
+pub fn draw_bars(all: &[Bars], png: &Path, svg: &Path) -> anyhow::Result<()> {
     let charts: Vec<Chart> = all.iter().map(chart).collect();
     draw_charts(&charts, WIDTH, png, svg)
 }
@@ -88,32 +80,26 @@ fn chart(bars: &Bars) -> Chart {
     Chart::new(bars.title.clone(), bars.x_label.clone(), bars.y_label.clone(), items, HEIGHT_PX).from_zero()
 }
 
-/// Draws the RMSE of each target by the size of the force, in `unit` (`N`).
-///
-/// # Errors
-/// A file that can't be written.
-pub(in crate::predictor) fn draw_error_by_magnitude(
+/// The RMSE of each target by the size of the force, in `unit` (`N`).
+pub(in crate::predictor) fn error_by_magnitude(
     title: &str,
     unit: &str,
     targets: &[String],
     bins: &[MagnitudeBin],
-    png: &Path,
-    svg: &Path,
-) -> anyhow::Result<()> {
+) -> Bars {
     let group = |bin: &MagnitudeBin| format!("{} to {} {unit}\n{} rows", plain(bin.from), plain(bin.to), bin.rows);
     let series = |(k, name): (usize, &String)| BarSeries {
         name: name.clone(),
         values: bins.iter().map(|bin| bin.rmse.get(k).copied().flatten()).collect(),
         errors: Vec::new(),
     };
-    let bars = Bars {
+    Bars {
         title: title.to_owned(),
         x_label: "size of what was measured".to_owned(),
         y_label: format!("RMSE, {unit}"),
         groups: bins.iter().map(group).collect(),
         series: targets.iter().enumerate().map(series).collect(),
-    };
-    draw_bars(&bars, png, svg)
+    }
 }
 
 /// Three digits without the zeros at their end.

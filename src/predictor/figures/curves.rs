@@ -1,9 +1,6 @@
 //! Errors over the number of photodiodes, the best of each number named (beyond Fig. 113), and over the training rows.
 
-use std::path::Path;
-
-use super::WIDTH;
-use crate::figure::{Chart, Item, draw_charts};
+use crate::figure::{Chart, Item};
 
 /// Height of the pictures, pixels.
 const HEIGHT_PX: u32 = 600;
@@ -26,20 +23,15 @@ pub(in crate::predictor) struct LearningSeries {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Draws the error of the best subset of each size, by the measure `name`; the photodiodes in it are written at the
+/// The error of the best subset of each size, by the measure `name`; the photodiodes in it are written at the
 /// points, `all` is every one of `photodiodes`.
-///
-/// # Errors
-/// A file that can't be written.
-pub(in crate::predictor) fn draw_best_subsets(
+pub(in crate::predictor) fn best_subsets(
     title: &str,
     y_label: &str,
     photodiodes: &[String],
     name: &str,
     best: &[Subset],
-    png: &Path,
-    svg: &Path,
-) -> anyhow::Result<()> {
+) -> Chart {
     let most = photodiodes.len();
     let mut best: Vec<&Subset> = best.iter().filter(|subset| subset.error.is_finite()).collect();
     best.sort_by_key(|subset| subset.photodiodes.len());
@@ -56,8 +48,7 @@ pub(in crate::predictor) fn draw_best_subsets(
         colour: 0,
         above: true,
     }));
-    let chart = Chart::new(title, "number of photodiodes", y_label, items, HEIGHT_PX).from_zero();
-    draw_charts(&[chart], WIDTH, png, svg)
+    Chart::new(title, "number of photodiodes", y_label, items, HEIGHT_PX).from_zero()
 }
 
 /// `P1 P4`, `all but P3`, `all`: whichever is shorter.
@@ -70,24 +61,18 @@ fn in_words(subset: &[String], all: &[String]) -> String {
     }
 }
 
-/// Draws errors over how much was learnt from.
-///
-/// # Errors
-/// A file that can't be written.
-pub(in crate::predictor) fn draw_learning_curve(
+/// Errors over how much was learnt from.
+pub(in crate::predictor) fn learning_curve(
     title: &str,
     x_label: &str,
     y_label: &str,
     series: &[LearningSeries],
-    png: &Path,
-    svg: &Path,
-) -> anyhow::Result<()> {
+) -> Chart {
     let mut items = Vec::new();
     for (colour, one) in series.iter().enumerate() {
         let points: Vec<[f64; 2]> = one.points.iter().copied().filter(|p| p[1].is_finite()).collect();
         items.push(Item::Line { name: Some(one.name.clone()), runs: vec![points.clone()], colour, width: 2 });
         items.push(Item::Dots { name: None, points, colour });
     }
-    let chart = Chart::new(title, x_label, y_label, items, HEIGHT_PX).from_zero();
-    draw_charts(&[chart], WIDTH, png, svg)
+    Chart::new(title, x_label, y_label, items, HEIGHT_PX).from_zero()
 }

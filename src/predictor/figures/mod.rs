@@ -16,8 +16,8 @@ mod scatter;
 mod tests;
 
 pub use bars::{BarSeries, Bars, draw_bars};
-pub(super) use bars::{MagnitudeBin, draw_bar_charts, draw_error_by_magnitude};
-pub(super) use curves::{LearningSeries, Subset, draw_best_subsets, draw_learning_curve};
+pub(super) use bars::{MagnitudeBin, error_by_magnitude};
+pub(super) use curves::{LearningSeries, Subset, best_subsets, learning_curve};
 pub(super) use modes::{Modes, draw_modes};
 pub(super) use nails::draw_nails;
 pub(super) use over_time::draw_over_time;
@@ -25,7 +25,7 @@ pub(super) use predicted::Predicted;
 pub(super) use scatter::draw_scatter;
 
 /// Width of pictures that are one panel wide, pixels.
-const WIDTH: u32 = 1400;
+pub(super) const WIDTH: u32 = 1400;
 
 /// `Fz, N` of the column `Fz_N`, `J2, degrees` of `J2_deg`; other names as they are.
 fn quantity(column: &str) -> String {

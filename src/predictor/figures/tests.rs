@@ -4,6 +4,7 @@ use lunula_predictor::{Dataset, Recording};
 use ndarray::{Array2, array};
 
 use super::*;
+use crate::figure::draw_charts;
 
 struct Drawn {
     _dir: tempfile::TempDir,
@@ -215,12 +216,12 @@ fn bars_are_drawn_in_groups() {
             series("Fz_N", 0.6, vec![Some(f64::NAN), Some(0.3)]),
         ],
     };
-    let full = drawn("bars", |png, svg| draw_bars(&bars, png, svg));
+    let full = drawn("bars", |png, svg| draw_bars(std::slice::from_ref(&bars), png, svg));
     assert!(full.svg.contains("none") && full.svg.contains("P8") && full.svg.contains("photodiode removed"));
     bars.series[0].values = vec![None, Some(f64::NAN), Some(-0.5), Some(0.0), Some(f64::INFINITY)];
-    let holes = drawn("bars-holes", |png, svg| draw_bars(&bars, png, svg));
+    let holes = drawn("bars-holes", |png, svg| draw_bars(std::slice::from_ref(&bars), png, svg));
     assert!(holes.of(BLUE) < full.of(BLUE) && holes.ink() > 10_000);
-    assert!(drawn("bars-none", |png, svg| draw_bars(&Bars::default(), png, svg)).ink() > 1000);
+    assert!(drawn("bars-none", |png, svg| draw_bars(&[Bars::default()], png, svg)).ink() > 1000);
 }
 
 #[test]
@@ -233,7 +234,7 @@ fn errors_are_drawn_by_the_size_of_the_force() {
     };
     let bins = [bin(0.0, 0.5, 12_000), bin(0.5, 1.0, 340), bin(1.0, 2.0, 400)];
     let picture = drawn("magnitude", |png, svg| {
-        draw_error_by_magnitude("Error by the size of the force", "N", &names(&FORCES), &bins, png, svg)
+        draw_bars(&[error_by_magnitude("Error by the size of the force", "N", &names(&FORCES), &bins)], png, svg)
     });
     assert!(picture.svg.contains("0.5 to 1 N") && picture.svg.contains("340 rows"));
 }
@@ -243,17 +244,9 @@ fn the_best_subsets_are_named() {
     let photodiodes: Vec<String> = (1..=8).map(|k| format!("P{k}")).collect();
     let best = |n: usize| Subset { photodiodes: photodiodes[..n].to_vec(), error: 0.6 + 1.2 / n as f64 };
     let best: Vec<Subset> = (1..=8).map(best).collect();
-    let picture = drawn("subsets", |png, svg| {
-        draw_best_subsets(
-            "Best photodiodes of each number",
-            "RMSE on held-out rows, N",
-            &photodiodes,
-            "Fz_N",
-            &best,
-            png,
-            svg,
-        )
-    });
+    let (title, label) = ("Best photodiodes of each number", "RMSE on held-out rows, N");
+    let chart = best_subsets(title, label, &photodiodes, "Fz_N", &best);
+    let picture = drawn("subsets", |png, svg| draw_charts(std::slice::from_ref(&chart), WIDTH, png, svg));
     assert!(picture.svg.contains("P1 P2 P3") && picture.svg.contains("all but P7 P8"), "names");
 }
 
@@ -266,9 +259,8 @@ fn learning_curves_are_drawn() {
     });
     series[1].points[5][1] = f64::NAN;
     let draw = |series: &[LearningSeries], name: &str| {
-        drawn(name, |png, svg| {
-            draw_learning_curve("Error by training rows", "training rows", "RMSE of Fz, N", series, png, svg)
-        })
+        let chart = learning_curve("Error by training rows", "training rows", "RMSE of Fz, N", series);
+        drawn(name, |png, svg| draw_charts(std::slice::from_ref(&chart), WIDTH, png, svg))
     };
     let curve = draw(&series, "learning");
     assert!(curve.of(BLUE) > 500 && curve.of(RED) > 500 && curve.svg.contains("held out"));

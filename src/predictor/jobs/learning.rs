@@ -9,9 +9,10 @@ use lunula_predictor::{
     Dataset, LearningPoint, Model, Recipe, learn_by_recordings, learn_by_share, predict, with_lags,
 };
 
+use crate::figure::draw_charts;
 use crate::files::{Places, WriteError};
 use crate::predictor::error::PredictorError;
-use crate::predictor::figures::{LearningSeries, draw_learning_curve};
+use crate::predictor::figures::{LearningSeries, WIDTH, learning_curve};
 use crate::table::{Column, TableWriter, Value};
 
 const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -83,7 +84,8 @@ pub(in crate::predictor) fn write(
             })
         })
         .collect();
-    draw_learning_curve("error on the validation recordings", "rows trained on", "RMSE", &series, &at[0], &at[1])
+    let chart = learning_curve("error on the validation recordings", "rows trained on", "RMSE", &series);
+    draw_charts(&[chart], WIDTH, &at[0], &at[1])
         .map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
     Ok(png)
 }

@@ -30,7 +30,7 @@ pub(super) fn write(report: &mut CompareReport, out: &Outputs, stages: &Stages) 
     table.finish()?;
     let people = report.people.len();
     let draw = |one: &Comparison| {
-        let bars = compared(one, people);
+        let bars = [compared(one, people)];
         staging.draw(&format!("fig-{}", one.figure), |png, svg| draw_bars(&bars, png, svg))
     };
     if out.figures {

@@ -63,5 +63,5 @@ pub(super) fn errors(errors: &[Errors], staging: &Staging) -> anyhow::Result<()>
         groups: errors.iter().map(group).collect(),
         series: vec![series(NAMES[0], |one| one.sensor), series(NAMES[1], |one| one.camera)],
     };
-    draw_bars(&bars, &staging.place("rmse.png")?, &staging.place("rmse.svg")?)
+    draw_bars(&[bars], &staging.place("rmse.png")?, &staging.place("rmse.svg")?)
 }

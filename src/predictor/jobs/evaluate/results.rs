@@ -9,8 +9,7 @@ use crate::files::Staging;
 use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{
-    self, BarSeries, Bars, MagnitudeBin, draw_bar_charts, draw_bars, draw_error_by_magnitude, draw_nails,
-    draw_over_time, draw_scatter,
+    self, BarSeries, Bars, MagnitudeBin, draw_bars, draw_nails, draw_over_time, draw_scatter, error_by_magnitude,
 };
 use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted, Splits};
 use crate::predictor::jobs::evaluate::splits::way;
@@ -76,9 +75,8 @@ fn evaluation_pictures(
             })
             .collect();
         let unit = if found.of.ends_with("_deg") { "degrees" } else { "N" };
-        pictures.push(staging.draw("by-magnitude", |png, svg| {
-            draw_error_by_magnitude(title, unit, shown.data.targets(), &bins, png, svg)
-        })?);
+        let bars = error_by_magnitude(title, unit, shown.data.targets(), &bins);
+        pictures.push(staging.draw("by-magnitude", |png, svg| draw_bars(&[bars], png, svg))?);
     }
     if let Some(found) = &report.held_out {
         let names = std::iter::once("all".to_owned()).chain(found.parts.iter().map(|part| part.name.clone()));
@@ -96,11 +94,11 @@ fn evaluation_pictures(
             groups: names.collect(),
             series: shown.data.targets().iter().enumerate().map(one).collect(),
         };
-        pictures.push(staging.draw("held-out", |png, svg| draw_bars(&bars, png, svg))?);
+        pictures.push(staging.draw("held-out", |png, svg| draw_bars(&[bars], png, svg))?);
     }
     if let Some(found) = &report.splits {
         let charts: Vec<Bars> = shown.data.targets().iter().map(|target| split_bars(found, target)).collect();
-        pictures.push(staging.draw("splits", |png, svg| draw_bar_charts(&charts, png, svg))?);
+        pictures.push(staging.draw("splits", |png, svg| draw_bars(&charts, png, svg))?);
     }
     Ok(pictures)
 }

@@ -1,9 +1,12 @@
 //! `subsets.csv`, Fig. 113 and the best subset of each size.
 
+use std::path::Path;
+
+use crate::figure::draw_charts;
 use crate::files::Staging;
 use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
-use crate::predictor::figures::{BarSeries, Bars, Subset, draw_bars, draw_best_subsets};
+use crate::predictor::figures::{BarSeries, Bars, Subset, WIDTH, best_subsets, draw_bars};
 use crate::predictor::jobs::prune::report::{PruneReport, PruneRow};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
@@ -35,18 +38,16 @@ pub(super) fn write(report: &mut PruneReport, out: &Outputs, stages: &Stages) ->
     let mut pictures = Vec::new();
     if out.figures && !report.without_one.is_empty() {
         let bars = without_one(report);
-        let drawn = stages.time("figures", || staging.draw("without-one", |png, svg| draw_bars(&bars, png, svg)));
+        let drawn = stages.time("figures", || staging.draw("without-one", |png, svg| draw_bars(&[bars], png, svg)));
         pictures.push(drawn?);
     }
     let subset = |row: &PruneRow| Some(Subset { photodiodes: row.inputs.clone(), error: row.score? });
     let best: Vec<Subset> = report.best_of_size.iter().filter_map(subset).collect();
     if out.figures && !best.is_empty() {
         let (title, label) = ("the best photodiodes of each number", "validation RMSE over the target's SD");
-        pictures.push(stages.time("figures", || {
-            staging.draw("best-of-size", |png, svg| {
-                draw_best_subsets(title, label, &report.inputs, "mean of the targets", &best, png, svg)
-            })
-        })?);
+        let chart = best_subsets(title, label, &report.inputs, "mean of the targets", &best);
+        let draw = |png: &Path, svg: &Path| draw_charts(&[chart], WIDTH, png, svg);
+        pictures.push(stages.time("figures", || staging.draw("best-of-size", draw))?);
     }
     report.pictures = pictures;
     Ok(staging)
