@@ -45,7 +45,8 @@ pub(super) struct Plan {
 /// What is done with a finger's rows.
 pub(super) struct Decide {
     finger: Option<(String, usize)>,
-    columns: StreamColumns,
+    /// The stream's columns.
+    pub(super) columns: StreamColumns,
     pub(super) samples: Option<Samples>,
     pub(super) answers: Option<Answers>,
     pub(super) rows: u64,
@@ -175,13 +176,8 @@ impl Decide {
             let names: Vec<String> = self.columns.photodiodes().map(|k| self.columns.values[k].clone()).collect();
             return view.finger(place, name, [&names, &[]], false);
         };
-        let answering = answers.sensor.answering();
+        let answering = &answers.sensor.answering;
         view.finger(place, name, [answering.inputs(), answering.columns()], answers.switch.is_some());
-    }
-
-    /// The stream's columns.
-    pub(super) fn columns(&self) -> &StreamColumns {
-        &self.columns
     }
 
     /// Whether the photodiodes of a row are whole numbers, one of them beyond what volts are.
@@ -249,7 +245,7 @@ impl Answers {
         let Some(answer) = self.sensor.row(row) else { return Ok(()) };
         self.touch += u64::from(answer.contact == Some(Contact::Touch));
         self.bending += u64::from(answer.contact == Some(Contact::Bending));
-        let values = self.sensor.answer();
+        let values = &self.sensor.answer;
         if let Some(switch) = &mut self.switch {
             switch.sample(row, values, answer.outside, ahead_s, outputs.events.as_mut())?;
         }
@@ -257,7 +253,7 @@ impl Answers {
             pointer.sample(row.time_s, values, answer.contact)?;
         }
         self.text.clear();
-        self.sensor.answering().push_row(&mut self.text, time_s, values, answer.contact);
+        self.sensor.answering.push_row(&mut self.text, time_s, values, answer.contact);
         let pressed = self.switch.as_ref().map(SwitchOutput::is_pressed);
         outputs.row(&AnswerRow {
             text: &self.text,
@@ -265,7 +261,7 @@ impl Answers {
             finger,
             pressed,
             time_s,
-            volts: self.sensor.volts(),
+            volts: &self.sensor.volts,
             contact: answer.contact,
         })
     }

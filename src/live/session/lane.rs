@@ -200,7 +200,7 @@ impl Work {
         let mut decide = decide?;
         if let Some((onlooker, more)) = &mut shared.onlooker {
             let joins = decide.samples.as_ref().is_some_and(Samples::joins_forces);
-            onlooker.begin(decide.columns(), joins)?;
+            onlooker.begin(&decide.columns, joins)?;
             decide.samples.as_mut().into_iter().for_each(|samples| samples.attended(more));
         }
         if let Some(view) = &mut shared.outputs.view {

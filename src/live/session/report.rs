@@ -138,7 +138,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
         }
         let period_s = lane.feed.stream.period_s();
         if let Some(decide) = lane.work.decide {
-            is_gated |= decide.answers.as_ref().is_some_and(|answers| answers.sensor.answering().is_gated());
+            is_gated |= decide.answers.as_ref().is_some_and(|answers| answers.sensor.answering.is_gated());
             let of_finger = figures.add(decide, period_s, &mut shared.notes, &mut failed);
             let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
             doubts.extend(of_finger.into_iter().map(|doubt| format!("{whose}{doubt}")));
@@ -161,7 +161,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     if let Some(mut predicted) = outputs.predicted {
         // Where nothing was answered that is what stands there, and not what an earlier session left.
         failed.extend(predicted.push("").err().map(|why| why.to_string()));
-        figures.lost_by_disk += predicted.lost();
+        figures.lost_by_disk += predicted.lost;
         failed.extend(predicted.finish().err().map(|why| why.to_string()));
     }
     let mut report = Report { left_out, warnings, notes, failed, ..Report::new(job, watch, figures) };
@@ -206,16 +206,16 @@ impl SessionFigures {
             let sensor = &answers.sensor;
             self.answered += sensor.lit;
             self.rows_not_known += sensor.not_known;
-            self.rows_outside += sensor.answering().outside();
+            self.rows_outside += sensor.answering.outside();
             self.touch += answers.touch;
             self.bending += answers.bending;
-            if let Some(counts) = answers.switch.as_ref().map(SwitchOutput::counts) {
+            if let Some(counts) = answers.switch.as_ref().map(|switch| switch.counts) {
                 let all = self.switch.get_or_insert_default();
                 all.presses += counts.presses;
                 all.releases += counts.releases;
                 all.let_go += counts.let_go;
             }
-            self.pointer = answers.pointer.as_ref().map(PointerOutput::counts);
+            self.pointer = answers.pointer.as_ref().map(|pointer| pointer.counts);
             if sensor.unknown > 0 {
                 notes.push(format!("{} rows do not say whether the LED was on and are left out", sensor.unknown));
             }

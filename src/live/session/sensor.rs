@@ -14,7 +14,8 @@ use crate::predictor::Answering;
 /// A sensor and its models.
 #[derive(Debug)]
 pub(crate) struct Sensor {
-    answering: Answering,
+    /// Its models.
+    pub(crate) answering: Answering,
     preceding: Option<Preceding>,
     /// Where each photodiode is in a row.
     places: Vec<usize>,
@@ -29,8 +30,10 @@ pub(crate) struct Sensor {
     /// A recording has begun, and no lit row of it has come yet.
     begins: bool,
     keep_faults: bool,
-    volts: Vec<f64>,
-    answer: Vec<f64>,
+    /// The voltages that were answered last, as [`Answering::inputs`]; NaN where not known.
+    pub(crate) volts: Vec<f64>,
+    /// The last answer, as [`Answering::columns`]; NaN where not known.
+    pub(crate) answer: Vec<f64>,
     /// Whether its photodiodes stand still.
     standing: Standing,
     /// Which were just seen to, for who looks after the session.
@@ -102,24 +105,9 @@ impl Sensor {
         self.standing.doubts()
     }
 
-    /// Its models.
-    pub(crate) fn answering(&self) -> &Answering {
-        &self.answering
-    }
-
     /// Whether its rows say whether the LED was on.
     pub(crate) fn has_led(&self) -> bool {
         self.preceding.is_some()
-    }
-
-    /// The voltages that were answered last, as [`Answering::inputs`]; NaN where not known.
-    pub(crate) fn volts(&self) -> &[f64] {
-        &self.volts
-    }
-
-    /// The last answer, as [`Answering::columns`]; NaN where not known.
-    pub(crate) fn answer(&self) -> &[f64] {
-        &self.answer
     }
 
     /// What its models make of a row; nothing of an unlit one.

@@ -81,7 +81,7 @@ const LONG: f64 = 10.0;
 /// That a contact lasts on while the finger presses again and again.
 fn closed(trace: &Trace, found: &[Match]) -> Option<String> {
     let length_s = |one: &Contact| one.end_s - one.start_s;
-    let contacts = trace.contacts.contacts();
+    let contacts = &trace.contacts.contacts;
     let usual_s = median_of(contacts.iter().map(length_s)).filter(|_| contacts.len() >= FEWEST)?;
     let longest = contacts.iter().max_by(|a, b| length_s(a).total_cmp(&length_s(b)))?;
     let again = found.iter().filter(|one| one.fate == Fate::Repeated && one.contact == Some(*longest)).count();
@@ -98,7 +98,7 @@ fn closed(trace: &Trace, found: &[Match]) -> Option<String> {
 
 /// That there is none for long while the finger presses as often as where there is.
 fn open(trace: &Trace, found: &[Match]) -> Option<String> {
-    let contacts = trace.contacts.contacts();
+    let contacts = &trace.contacts.contacts;
     let (first, last) = (contacts.first()?, contacts.last()?);
     let ends = [*trace.time_s.first()?, *trace.time_s.last()?];
     let touched_s = last.end_s - first.start_s;

@@ -170,7 +170,7 @@ fn read_trace(
                 return Err(format!("has more than {MOST_ROWS} rows; cut it into parts"));
             }
             trace.time_s.push(row.time_s);
-            trace.value.push(sign * sensor.answer()[at]);
+            trace.value.push(sign * sensor.answer[at]);
             trace.outside.push(answer.outside);
             Ok(())
         },
@@ -217,7 +217,7 @@ fn read_trace(
              false switches count that time"
         ));
     }
-    if trace.contacts.seconds() == 0.0 {
+    if trace.contacts.seconds == 0.0 {
         let (rows, lit) = (times.len(), &trace.time_s);
         let apart_s = (lit[lit.len() - 1] - lit[0]) / (lit.len() - 1) as f64;
         return Err(refused(if known == 0 {

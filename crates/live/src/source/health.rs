@@ -64,12 +64,12 @@ pub struct State {
 /// Watches a stream that comes live.
 #[derive(Debug, Clone)]
 pub(in crate::source) struct Health {
-    state: State,
+    pub(in crate::source) state: State,
     history: Vec<State>,
     changes: u64,
     /// When bytes could come first, or the latest row came.
     alive_ns: u64,
-    any: bool,
+    pub(in crate::source) any: bool,
     /// Rows since the window's begin.
     window: (u32, u64),
 }
@@ -80,17 +80,9 @@ impl Health {
         Self { state, history: vec![state], changes: 0, alive_ns: now_ns, any: false, window: (0, now_ns) }
     }
 
-    pub(in crate::source) fn state(&self) -> State {
-        self.state
-    }
-
     /// Every state up to now, and how many changes were too many to keep.
     pub(in crate::source) fn history(&self) -> (&[State], u64) {
         (&self.history, self.changes.saturating_sub(self.history.len() as u64 - 1))
-    }
-
-    pub(in crate::source) fn any(&self) -> bool {
-        self.any
     }
 
     /// Changes the condition; none where it is so already.

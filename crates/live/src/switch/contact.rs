@@ -29,11 +29,14 @@ pub struct Contact {
 /// The contacts of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Contacts {
-    contacts: Vec<Contact>,
+    /// The contacts, in the order of time within each recording.
+    pub contacts: Vec<Contact>,
     /// From when to when contact is known, seconds, ascending.
     known: Vec<[f64; 2]>,
-    seconds: f64,
-    unknown_s: f64,
+    /// The time between rows of which contact is known, seconds.
+    pub seconds: f64,
+    /// The time between rows of which one does not say whether the finger touches, seconds; gaps are not counted.
+    pub unknown_s: f64,
     last: Option<(f64, Option<bool>)>,
 }
 
@@ -77,24 +80,6 @@ impl Contacts {
             _ => {}
         }
         self.last = Some((time_s, touches));
-    }
-
-    /// The contacts, in the order of time within each recording.
-    #[must_use]
-    pub fn contacts(&self) -> &[Contact] {
-        &self.contacts
-    }
-
-    /// The time between rows of which contact is known, seconds.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.seconds
-    }
-
-    /// The time between rows of which one does not say whether the finger touches, seconds; gaps are not counted.
-    #[must_use]
-    pub fn unknown_s(&self) -> f64 {
-        self.unknown_s
     }
 
     /// Whether contact is known at a time, of rows whose times ascend as a stream's do.

@@ -164,9 +164,9 @@ impl Evaluation {
 impl Tally {
     pub(super) fn of(config: &SwitchConfig, trace: &Trace) -> Self {
         let contacts = &trace.contacts;
-        let mut tally = Self { seconds: contacts.seconds(), unknown_s: contacts.unknown_s(), ..Self::default() };
+        let mut tally = Self { seconds: contacts.seconds, unknown_s: contacts.unknown_s, ..Self::default() };
         let presses = presses(config, trace, &mut tally.let_go);
-        tally.presses = contacts.contacts().iter().filter(|one| one.start_known && one.end_known).count();
+        tally.presses = contacts.contacts.iter().filter(|one| one.start_known && one.end_known).count();
         tally.decisions = presses.len();
         tally.not_judged = presses.iter().filter(|press| !contacts.knows(press[0])).count();
         for Match { press_s, release_s, contact, fate } in compare(&presses, contacts) {
@@ -251,7 +251,7 @@ fn presses(config: &SwitchConfig, trace: &Trace, let_go: &mut u64) -> Vec<[f64; 
 
 /// Gives each press its contact, where contact is known.
 fn compare(presses: &[[f64; 2]], known: &Contacts) -> Vec<Match> {
-    let contacts = known.contacts();
+    let contacts = &known.contacts;
     let mut taken = vec![false; contacts.len()];
     let mut found: Vec<Match> = Vec::with_capacity(presses.len());
     // In the order of time: the contact that began last before the press.

@@ -34,7 +34,7 @@ impl Lag {
     /// Of a recording; none where it has fewer than five whole contacts, or values that are not like contact.
     #[must_use]
     pub fn of(trace: &Trace) -> Option<Self> {
-        let contacts = trace.contacts.contacts();
+        let contacts = &trace.contacts.contacts;
         if contacts.iter().filter(|one| one.start_known && one.end_known).count() < FEWEST {
             return None;
         }

@@ -308,11 +308,11 @@ fn contacts_at_gaps_and_ends_are_not_held_against_the_switch() {
     for (k, (t_s, touches)) in rows.into_iter().enumerate() {
         contacts.push(t_s, Some(touches == 1), k == 0);
     }
-    let known: Vec<_> = contacts.contacts().iter().map(|one| (one.start_known, one.end_known)).collect();
+    let known: Vec<_> = contacts.contacts.iter().map(|one| (one.start_known, one.end_known)).collect();
     // Already touching; whole (two closer than 0.1 s are one); into a gap; out of one.
     assert_eq!(known, [(false, true), (true, true), (true, false), (false, true)]);
-    assert_eq!((contacts.contacts()[1].start_s, contacts.contacts()[1].end_s), (0.4, 0.6));
-    assert!((contacts.seconds() - 0.9).abs() <= 1e-12);
+    assert_eq!((contacts.contacts[1].start_s, contacts.contacts[1].end_s), (0.4, 0.6));
+    assert!((contacts.seconds - 0.9).abs() <= 1e-12);
 }
 
 #[test]

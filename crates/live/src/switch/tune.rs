@@ -162,7 +162,7 @@ fn period_s(traces: &[Trace]) -> f64 {
 fn values(traces: &[Trace], touching: bool) -> Vec<f64> {
     let mut found = Vec::new();
     for trace in traces {
-        let mut contacts = trace.contacts.contacts().iter().peekable();
+        let mut contacts = trace.contacts.contacts.iter().peekable();
         for (&t_s, &value) in trace.time_s.iter().zip(&trace.value).filter(|(_, value)| value.is_finite()) {
             while contacts.next_if(|one| one.end_s + 1.0 < t_s).is_some() {}
             let at = contacts.peek().map(|one| (t_s - one.start_s, t_s - one.end_s));
@@ -186,7 +186,7 @@ fn noise(traces: &[Trace]) -> Option<NoiseRate> {
 /// # Errors
 /// [`TuneFault::NoContacts`].
 pub fn any_contact(traces: &[Trace]) -> Result<(), TuneFault> {
-    let whole = |trace: &Trace| trace.contacts.contacts().iter().any(|one| one.start_known && one.end_known);
+    let whole = |trace: &Trace| trace.contacts.contacts.iter().any(|one| one.start_known && one.end_known);
     if traces.iter().any(whole) { Ok(()) } else { Err(TuneFault::NoContacts) }
 }
 

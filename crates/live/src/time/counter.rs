@@ -23,6 +23,7 @@ pub enum Count {
 /// A counter that grows by one with each row and may begin again after 2^8, 2^16 or 2^32.
 #[derive(Debug, Clone, Default)]
 pub struct Counter {
+    /// After which it begins again, where they are known.
     bits: Option<u32>,
     last: Option<u64>,
     /// Of the 64 counts up to the latest, which came; bit 0 is the latest.
@@ -34,12 +35,6 @@ impl Counter {
     #[must_use]
     pub fn of_bits(bits: Option<u32>) -> Self {
         Self { bits: bits.filter(|bits| *bits < 64), ..Self::default() }
-    }
-
-    /// The bits after which it begins again, where they are known.
-    #[must_use]
-    pub fn bits(&self) -> Option<u32> {
-        self.bits
     }
 
     /// Begins at a count.
@@ -140,7 +135,7 @@ mod tests {
                     }
                 }
                 let skipped = (0..1000).filter(|n| n % 50 > 30 && n % 3 != 0 && *n < 990).count();
-                assert_eq!((lost, counter.bits()), (skipped as u64, Some(bits)));
+                assert_eq!((lost, counter.bits), (skipped as u64, Some(bits)));
             }
         }
     }

@@ -191,7 +191,7 @@ impl Outputs {
     /// Whether there were readers, all have gone and none can come.
     pub(super) fn nobody_reads(&self) -> bool {
         let others = self.listener.is_some() || self.outlet.is_open();
-        !others && !self.readers.is_empty() && self.readers.iter().all(Pipe::is_gone)
+        !others && !self.readers.is_empty() && self.readers.iter().all(|pipe| pipe.gone)
     }
 
     /// Gives readers a moment to take what is left; why one could not be written.
@@ -202,7 +202,7 @@ impl Outputs {
 
     /// Rows that readers lost.
     pub(super) fn lost(&self) -> u64 {
-        self.readers.iter().map(Pipe::lost).sum()
+        self.readers.iter().map(|pipe| pipe.lost).sum()
     }
 }
 

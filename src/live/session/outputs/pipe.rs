@@ -24,10 +24,12 @@ pub(crate) struct Pipe {
     fd: OwnedFd,
     pending: VecDeque<u8>,
     waits: bool,
-    gone: bool,
+    /// Whether the reader has gone away.
+    pub(crate) gone: bool,
     /// Why it can't be written, where it is not that the reader has gone away.
     failed: Option<Errno>,
-    lost: u64,
+    /// Rows that were left out as the reader was too slow.
+    pub(crate) lost: u64,
 }
 
 impl Pipe {
@@ -85,19 +87,9 @@ impl Pipe {
         !self.pending.is_empty() && !self.gone
     }
 
-    /// Whether the reader has gone away.
-    pub(crate) fn is_gone(&self) -> bool {
-        self.gone
-    }
-
     /// Why rows could not be written; a reader that has gone away is no fault.
     pub(crate) fn failed(&self) -> Option<io::Error> {
         self.failed.map(io::Error::from)
-    }
-
-    /// Rows that were left out as the reader was too slow.
-    pub(crate) fn lost(&self) -> u64 {
-        self.lost
     }
 }
 
@@ -126,7 +118,7 @@ mod tests {
             pipe.flush();
         }
         // 64 KiB are in the pipe itself.
-        let kept = 20_000 - pipe.lost();
+        let kept = 20_000 - pipe.lost;
         assert!((16_000..17_500).contains(&kept) && pipe.is_behind(), "{kept}");
         let reader = std::thread::spawn(move || {
             let mut text = String::new();
@@ -151,7 +143,7 @@ mod tests {
         let mut pipe = Pipe::new(to, true);
         (0..300_000).for_each(|k| pipe.push(&format!("{k},{k},{k},{k},{k},{k},{k},{k},{k},{k},{k}\n")));
         pipe.finish();
-        assert_eq!((pipe.lost(), pipe.is_gone()), (0, false));
+        assert_eq!((pipe.lost, pipe.gone), (0, false));
         drop(pipe);
         assert_eq!(reader.join().unwrap(), 300_000);
     }
@@ -163,6 +155,6 @@ mod tests {
         let mut pipe = Pipe::new(to, false);
         pipe.push("1\n");
         pipe.flush();
-        assert!(pipe.is_gone() && !pipe.is_behind());
+        assert!(pipe.gone && !pipe.is_behind());
     }
 }

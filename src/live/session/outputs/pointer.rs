@@ -19,7 +19,8 @@ pub(crate) struct PointerOutput {
     bend: Option<usize>,
     events: Option<EventsFile>,
     uinput: Option<Uinput>,
-    counts: PointerCounts,
+    /// What it did.
+    pub(crate) counts: PointerCounts,
 }
 
 /// What a pointer did in a session.
@@ -72,11 +73,6 @@ impl PointerOutput {
         let events = EventsFile::create(files.events.as_deref())?;
         let uinput = files.uinput.then(Uinput::open).transpose().map_err(|why| LiveError::Request(why.to_string()))?;
         Ok(Self { pointer: Pointer::new(config), forces, bend, events, uinput, counts: PointerCounts::default() })
-    }
-
-    /// What it did.
-    pub(crate) fn counts(&self) -> PointerCounts {
-        self.counts
     }
 
     /// After how long without a valid sample everything is let go, seconds.

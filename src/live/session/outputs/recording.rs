@@ -35,7 +35,8 @@ pub(crate) struct Recording {
     waits: bool,
     shared: Arc<Shared>,
     writer: Option<JoinHandle<io::Result<()>>>,
-    lost: u64,
+    /// Rows that were left out as the disk was too slow.
+    pub(crate) lost: u64,
 }
 
 #[derive(Debug, Default)]
@@ -85,11 +86,6 @@ impl Recording {
     /// Names the columns; before the first row.
     pub(crate) fn name(&mut self, columns: Vec<String>) {
         self.columns = columns;
-    }
-
-    /// Rows that were left out as the disk was too slow.
-    pub(crate) fn lost(&self) -> u64 {
-        self.lost
     }
 
     /// Adds a row with its end.

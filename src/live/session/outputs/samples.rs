@@ -249,7 +249,7 @@ impl Samples {
 
     /// Rows that were left out as the disk was too slow.
     pub(crate) fn lost(&self) -> u64 {
-        self.recording.lost()
+        self.recording.lost
     }
 
     /// Ends it: all rows are on disk.

@@ -19,7 +19,8 @@ pub(crate) struct SwitchOutput {
     place: Option<[usize; 2]>,
     /// The switch under the press.
     name: Option<String>,
-    counts: SwitchCounts,
+    /// What it did.
+    pub(crate) counts: SwitchCounts,
 }
 
 /// What switches did in a session.
@@ -58,11 +59,6 @@ impl SwitchOutput {
         }
         let finger = finger.or_else(|| switch.config().finger.clone());
         Ok(Self { switch, finger, column, sign, place, name: None, counts: SwitchCounts::default() })
-    }
-
-    /// What it did.
-    pub(crate) fn counts(&self) -> SwitchCounts {
-        self.counts
     }
 
     /// Whether it is pressed.

@@ -44,7 +44,8 @@ const SLACK_S: f64 = 1e-9;
 pub struct Pointer {
     config: Config,
     armed: bool,
-    touches: bool,
+    /// Whether the finger touches, as far as is known.
+    pub(in crate::pointer) touches: bool,
     /// The last sample of any kind; NaN before the first.
     last_s: f64,
     /// Whether it was valid.
@@ -93,12 +94,6 @@ impl Pointer {
     #[must_use]
     pub fn is_down(&self) -> bool {
         self.clicks.is_down()
-    }
-
-    /// Whether the finger touches, as far as is known.
-    #[must_use]
-    pub fn touches(&self) -> bool {
-        self.touches
     }
 
     /// Where the pointer is, px from where it began: the integral of all motion less what was taken back. The sum of

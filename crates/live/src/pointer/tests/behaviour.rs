@@ -7,9 +7,9 @@ use super::*;
 fn a_finger_that_touches_and_pushes_moves_the_pointer_and_no_other_does() {
     let mut bench = Bench::new(Config::default());
     bench.hold(0.5, [0.5, 0.2, 0.0]).hold(0.5, [0.5, 0.2, 0.29]);
-    assert_eq!((bench.at(), bench.pointer.touches()), ([0, 0], false), "in the air");
+    assert_eq!((bench.at(), bench.pointer.touches), ([0, 0], false), "in the air");
     bench.hold(0.5, AIR).hold(1.0, REST).hold(1.0, [0.15, 0.15, 0.9]);
-    assert_eq!((bench.at(), bench.pointer.touches()), ([0, 0], true), "within the dead zone");
+    assert_eq!((bench.at(), bench.pointer.touches), ([0, 0], true), "within the dead zone");
     bench.hold(1.0, PUSH);
     let [right, down] = bench.at();
     assert!(right > 50 && down < -20, "{right} {down}");

@@ -178,7 +178,7 @@ impl Stream {
                 self.decoder.cut(true);
             }
             // Open, and silent until a row comes.
-            let condition = if self.health.any() { Condition::Stalled } else { Condition::Ok };
+            let condition = if self.health.any { Condition::Stalled } else { Condition::Ok };
             if let Some(state) = self.health.set(condition, now_ns) {
                 on(Event::State(state));
             }

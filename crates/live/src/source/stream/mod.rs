@@ -253,7 +253,7 @@ impl Stream {
     /// How the stream is.
     #[must_use]
     pub fn state(&self) -> State {
-        self.health.state()
+        self.health.state
     }
 
     /// Whether rows come live, so that their arrival says something.
