@@ -20,15 +20,22 @@ const NODES: usize = 8;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Network {
     centre: Vec<f64>,
-    scale: Vec<f64>,
+    /// s, volts, an input each.
+    pub(crate) scale: Vec<f64>,
+    /// W_P, nodes x inputs, for centred and scaled voltages.
     #[serde(serialize_with = "crate::model::rows")]
-    hidden_weights: Array2<f64>,
-    hidden_biases: Vec<f64>,
+    pub(crate) hidden_weights: Array2<f64>,
+    /// b_H, a node each.
+    pub(crate) hidden_biases: Vec<f64>,
+    /// W_H, targets x nodes, for centred and scaled targets.
     #[serde(serialize_with = "crate::model::rows")]
-    output_weights: Array2<f64>,
-    output_biases: Vec<f64>,
-    target_centre: Vec<f64>,
-    target_scale: Vec<f64>,
+    pub(crate) output_weights: Array2<f64>,
+    /// b_F, a target each.
+    pub(crate) output_biases: Vec<f64>,
+    /// y_m, a target each, in its unit.
+    pub(crate) target_centre: Vec<f64>,
+    /// y_s, a target each, in its unit.
+    pub(crate) target_scale: Vec<f64>,
     /// 1 / s.
     #[serde(skip)]
     inverse: Vec<f64>,
@@ -106,48 +113,6 @@ impl Network {
             turned,
             biases,
         })
-    }
-
-    /// s, volts, an input each.
-    #[must_use]
-    pub fn scale(&self) -> &[f64] {
-        &self.scale
-    }
-
-    /// W_P, nodes x inputs, for centred and scaled voltages.
-    #[must_use]
-    pub fn hidden_weights(&self) -> &Array2<f64> {
-        &self.hidden_weights
-    }
-
-    /// b_H, a node each.
-    #[must_use]
-    pub fn hidden_biases(&self) -> &[f64] {
-        &self.hidden_biases
-    }
-
-    /// W_H, targets x nodes, for centred and scaled targets.
-    #[must_use]
-    pub fn output_weights(&self) -> &Array2<f64> {
-        &self.output_weights
-    }
-
-    /// b_F, a target each.
-    #[must_use]
-    pub fn output_biases(&self) -> &[f64] {
-        &self.output_biases
-    }
-
-    /// y_m, a target each, in its unit.
-    #[must_use]
-    pub fn target_centre(&self) -> &[f64] {
-        &self.target_centre
-    }
-
-    /// y_s, a target each, in its unit.
-    #[must_use]
-    pub fn target_scale(&self) -> &[f64] {
-        &self.target_scale
     }
 
     /// N, how many hidden nodes.

@@ -67,14 +67,14 @@ fn naive(model: &Model, x: &[f64]) -> Vec<(f64, f64)> {
         }
         Model::Network(one) => {
             let node = |j: usize| {
-                let term = |i: usize| one.hidden_weights()[[j, i]] * (x[i] - one.centre()[i]) / one.scale()[i];
-                (one.hidden_biases()[j] + (0..x.len()).map(term).sum::<f64>()).tanh()
+                let term = |i: usize| one.hidden_weights[[j, i]] * (x[i] - one.centre()[i]) / one.scale[i];
+                (one.hidden_biases[j] + (0..x.len()).map(term).sum::<f64>()).tanh()
             };
             let target = |k: usize| {
-                let terms = (0..one.hidden()).map(|j| one.output_weights()[[k, j]] * node(j)).collect();
-                let (value, size) = sum(one.output_biases()[k], terms);
-                let scale = one.target_scale()[k];
-                (one.target_centre()[k] + scale * value, one.target_centre()[k].abs() + scale * size)
+                let terms = (0..one.hidden()).map(|j| one.output_weights[[k, j]] * node(j)).collect();
+                let (value, size) = sum(one.output_biases[k], terms);
+                let scale = one.target_scale[k];
+                (one.target_centre[k] + scale * value, one.target_centre[k].abs() + scale * size)
             };
             (0..one.targets()).map(target).collect()
         }

@@ -247,7 +247,7 @@ fn columns_that_do_not_change_are_left_out() {
     y.column_mut(0).fill(-0.1);
     let data = named(x, y);
     let (network, report) = train_network(&data, None, &options(3)).unwrap();
-    assert!(network.hidden_weights().column(1).iter().all(|&weight| weight == 0.0));
+    assert!(network.hidden_weights.column(1).iter().all(|&weight| weight == 0.0));
     assert!(network.predict(data.x().view()).column(0).iter().all(|&value| value == -0.1));
     assert!(report.warnings.contains(&"P2 is 2.7 in all training rows: its weights are 0".to_owned()));
     assert!(report.warnings.contains(&"F1 is -0.1 in all training rows, and so in all predictions".to_owned()));
