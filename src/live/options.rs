@@ -101,13 +101,16 @@ pub struct SessionFiles {
 }
 
 /// Files of a mouse.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct MouseFiles {
-    /// Its `mouse.toml`; none: defaults.
+    /// Dead zone, gains, thresholds, times [default: the defaults of each key]
+    #[arg(long, value_name = "MOUSE.toml")]
     pub config: Option<PathBuf>,
-    /// Its events.
+    /// Moves, buttons and scrolling, a line of JSON each
+    #[arg(long, value_name = "EVENTS.jsonl", required_unless_present_any = ["uinput", "plan"])]
     pub events: Option<PathBuf>,
-    /// Whether it moves the pointer of this computer.
+    /// Move the pointer of this computer (Linux' uinput; `lunula doctor` says what it lacks)
+    #[arg(long)]
     pub uinput: bool,
 }
 

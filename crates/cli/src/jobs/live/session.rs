@@ -81,15 +81,8 @@ pub(crate) struct MouseArgs {
     models: Vec<PathBuf>,
     #[command(flatten)]
     given: Given<MouseOptions>,
-    /// Dead zone, gains, thresholds, times [default: the defaults of each key]
-    #[arg(long, value_name = "MOUSE.toml")]
-    config: Option<PathBuf>,
-    /// Moves, buttons and scrolling, a line of JSON each
-    #[arg(long, value_name = "EVENTS.jsonl", required_unless_present_any = ["uinput", "plan"])]
-    events: Option<PathBuf>,
-    /// Move the pointer of this computer (Linux' uinput; `lunula doctor` says what it lacks)
-    #[arg(long)]
-    uinput: bool,
+    #[command(flatten)]
+    mouse: MouseFiles,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
@@ -134,12 +127,11 @@ pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
     let MouseOptions { stream, answer } = args.given.options.clone();
     let options = LiveOptions { stream, answer, tcp: None, lsl: None, serve: false };
     let stop = common.start()?;
-    let mouse = MouseFiles { config: args.config.clone(), events: args.events.clone(), uinput: args.uinput };
     let files = SessionFiles {
         out: args.out.out.clone(),
         replace: args.out.replace,
         models: all(&args.models),
-        mouse: Some(mouse),
+        mouse: Some(args.mouse.clone()),
         ..SessionFiles::default()
     };
     if args.job.plan {
