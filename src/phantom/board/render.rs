@@ -84,12 +84,6 @@ impl Scene {
         &self.views
     }
 
-    /// The board in the finger's plane, where there is one.
-    #[must_use]
-    pub fn plane(&self) -> Option<&View> {
-        self.plane.as_ref()
-    }
-
     /// The inner corners of a view as the lens shows them, row after row, pixels.
     #[must_use]
     pub fn corners_px(&self, view: &View) -> Vec<[f64; 2]> {
