@@ -20,7 +20,7 @@ pub(super) use bars::{MagnitudeBin, error_by_magnitude};
 pub(super) use curves::{LearningSeries, Subset, best_subsets, learning_curve};
 pub(super) use modes::{Modes, draw_modes};
 pub(super) use nails::draw_nails;
-pub(super) use over_time::draw_over_time;
+pub(super) use over_time::over_time;
 pub(super) use predicted::Predicted;
 pub(super) use scatter::draw_scatter;
 

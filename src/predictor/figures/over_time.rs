@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::{Predicted, WIDTH, quantity, three_digits, unit};
-use crate::figure::{Chart, Item, MOST_BINS, Thinned, draw_charts};
+use super::{Predicted, quantity, three_digits, unit};
+use crate::figure::{Chart, Item, MOST_BINS, Thinned};
 use crate::median::{ends, median_of};
 
 /// Height of a panel, pixels.
@@ -17,19 +17,10 @@ const BETWEEN: f64 = 0.01;
 const NAMED: f64 = 0.08;
 const LETTERS: f64 = 170.0;
 
-/// Draws predicted and measured over time, with prediction intervals where they are given.
-///
-/// # Errors
-/// A file that can't be written.
-pub(in crate::predictor) fn draw_over_time(
-    all: &Predicted<'_>,
-    title: &str,
-    png: &Path,
-    svg: &Path,
-) -> anyhow::Result<()> {
+/// Predicted and measured over time, with prediction intervals where they are given; a chart per target.
+pub(in crate::predictor) fn over_time(all: &Predicted<'_>, title: &str) -> Vec<Chart> {
     let line = TimeLine::of(all);
-    let charts: Vec<Chart> = (0..all.targets.len()).map(|target| panel(all, &line, target, title)).collect();
-    draw_charts(&charts, WIDTH, png, svg)
+    (0..all.targets.len()).map(|target| panel(all, &line, target, title)).collect()
 }
 
 fn panel(all: &Predicted<'_>, line: &TimeLine, target: usize, title: &str) -> Chart {

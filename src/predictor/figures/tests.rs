@@ -78,14 +78,15 @@ fn predictions_are_drawn_over_time() {
     (200..400).for_each(|row| predicted[[row, 1]] = f64::NAN);
     let (low, high) = (&predicted - 0.5, &predicted + 0.5);
     let mut all = Predicted::of(&data, predicted.view());
-    let plain = drawn("time", |png, svg| draw_over_time(&all, "validation, linear model", png, svg));
+    let plain = drawn("time", |png, svg| draw_charts(&over_time(&all, "validation, linear model"), WIDTH, png, svg));
     assert!(plain.of(BLUE) > 2000 && plain.of(RED) > 2000, "{} {}", plain.of(BLUE), plain.of(RED));
     assert!(plain.svg.contains("anna-spiral3.csv") && plain.svg.contains("RMSE") && plain.svg.contains("Fz, N"));
     all.interval = Some(([low.view(), high.view()], 0.9));
-    let banded = drawn("time-band", |png, svg| draw_over_time(&all, "validation, linear model", png, svg));
+    let banded =
+        drawn("time-band", |png, svg| draw_charts(&over_time(&all, "validation, linear model"), WIDTH, png, svg));
     assert!(banded.ink() > plain.ink() && banded.svg.contains("interval for 90 % of the rows"));
     all.measured = None;
-    let alone = drawn("time-alone", |png, svg| draw_over_time(&all, "", png, svg));
+    let alone = drawn("time-alone", |png, svg| draw_charts(&over_time(&all, ""), WIDTH, png, svg));
     assert!(alone.of(BLUE) < plain.of(BLUE) / 4 && !alone.svg.contains("RMSE"));
 }
 
@@ -93,7 +94,7 @@ fn predictions_are_drawn_over_time() {
 fn files_do_not_grow_with_the_rows() {
     let (data, predicted) = spirals(2, 20_000);
     let all = Predicted::of(&data, predicted.view());
-    let time = drawn("time-long", |png, svg| draw_over_time(&all, "long", png, svg));
+    let time = drawn("time-long", |png, svg| draw_charts(&over_time(&all, "long"), WIDTH, png, svg));
     let scatter = drawn("scatter-long", |png, svg| draw_scatter(&all, "long", png, svg));
     assert!(time.svg.len() < 600_000 && scatter.svg.len() < 1_500_000, "{} {}", time.svg.len(), scatter.svg.len());
 }
@@ -124,7 +125,7 @@ fn one(time_s: &[f64], measured: &[f64], predicted: &[f64], name: &str) -> [Draw
         interval: Some(([predicted.view(), predicted.view()], 0.9)),
     };
     [
-        drawn(&format!("{name}-time"), |png, svg| draw_over_time(&all, "", png, svg)),
+        drawn(&format!("{name}-time"), |png, svg| draw_charts(&over_time(&all, ""), WIDTH, png, svg)),
         drawn(&format!("{name}-scatter"), |png, svg| draw_scatter(&all, "", png, svg)),
     ]
 }

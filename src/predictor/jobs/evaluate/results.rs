@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use lunula_predictor::Eigennails;
 use ndarray::Array2;
 
+use crate::figure::draw_charts;
 use crate::files::Staging;
 use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{
-    self, BarSeries, Bars, MagnitudeBin, draw_bars, draw_nails, draw_over_time, draw_scatter, error_by_magnitude,
+    self, BarSeries, Bars, MagnitudeBin, WIDTH, draw_bars, draw_nails, draw_scatter, error_by_magnitude, over_time,
 };
 use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted, Splits};
 use crate::predictor::jobs::evaluate::splits::way;
@@ -60,7 +61,7 @@ fn evaluation_pictures(
     let mut drawn = figures::Predicted::of(&shown.data, shown.values.view());
     drawn.interval = widths.as_ref().map(|([low, high], level)| ([low.view(), high.view()], *level));
     let mut pictures = vec![
-        staging.draw("over-time", |png, svg| draw_over_time(&drawn, title, png, svg))?,
+        staging.draw("over-time", |png, svg| draw_charts(&over_time(&drawn, title), WIDTH, png, svg))?,
         staging.draw("scatter", |png, svg| draw_scatter(&drawn, title, png, svg))?,
     ];
     if let Some(found) = &report.by_magnitude {
