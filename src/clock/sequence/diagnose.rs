@@ -110,8 +110,8 @@ pub(super) fn late(points: &[Point], hulls: &Hulls, room_s: f64, late_s: f64, mi
     if late_s < LATE_S {
         return None;
     }
-    let (room, end_s) = hulls.least_room(LARGEST_DRIFT * hulls.half_s());
-    let drift = end_s / hulls.half_s();
+    let (room, end_s) = hulls.least_room(LARGEST_DRIFT * hulls.half_s);
+    let drift = end_s / hulls.half_s;
     let rate =
         (drift.abs() > MOST_DRIFT).then_some((room - room_s, LEFT_BY_RATE, ClockFault::Rate { rate: 1.0 + drift }));
     let jumps =

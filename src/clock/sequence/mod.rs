@@ -281,7 +281,7 @@ fn refuse_worst(seen: &[Seen], agreed: &mut Agreed, hulls: &Hulls, most_end_s: f
         .zip(&agreed.turns_s)
         .enumerate()
         .filter_map(|(k, (seen, turns_s))| {
-            Some((seen.shown_s + (*turns_s)? - seen.time_s * (1.0 + end_s / hulls.half_s()), k))
+            Some((seen.shown_s + (*turns_s)? - seen.time_s * (1.0 + end_s / hulls.half_s), k))
         })
         .collect();
     let middle = off.len() / 2;

@@ -16,18 +16,13 @@ pub(super) struct Hulls {
     /// Convex from below.
     lower: Vec<Point>,
     /// Half the time span, seconds; never 0.
-    half_s: f64,
+    pub(super) half_s: f64,
 }
 
 impl Hulls {
     /// The hulls of points sorted by time, whose times are within `±half_s`.
     pub(super) fn new(sorted: impl Iterator<Item = Point> + Clone, half_s: f64) -> Self {
         Self { upper: hull(sorted.clone(), 1.0), lower: hull(sorted, -1.0), half_s }
-    }
-
-    /// Half the time span, seconds.
-    pub(super) fn half_s(&self) -> f64 {
-        self.half_s
     }
 
     /// The least room with which a line with `|end| <= most_end_s` agrees with all, and that line's `end`; below 0

@@ -189,7 +189,7 @@ impl Tracker {
     /// How much looking it took so far.
     pub(crate) fn effort(&self) -> Effort {
         let all = (self.size.0 * self.size.1) as f64 * self.effort.frames.max(1) as f64;
-        Effort { share_searched: self.finder.samples() as f64 / all, ..self.effort }
+        Effort { share_searched: self.finder.samples as f64 / all, ..self.effort }
     }
 
     fn expect(&mut self, marker: usize, frame: u64) {

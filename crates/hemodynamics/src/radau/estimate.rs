@@ -30,7 +30,7 @@ impl<const S: usize> Stepper<S> {
         let (lumens, rates) = (&self.pair_lumens, &self.pair_rates);
         model.accelerations_in_lanes(lumens, rates, &inputs, &mut self.pair_scratch, &mut self.pair);
         self.evaluations += 2;
-        let (real, shift) = (table.eigenvalues[S - 1], self.factors.shift()[S - 1]);
+        let (real, shift) = (table.eigenvalues[S - 1], self.factors.shift[S - 1]);
         let [lumens, probed, filtered] = &mut self.work;
         for j in 0..self.bumps.len() {
             lumens[j] = self.bumps[j] / real;

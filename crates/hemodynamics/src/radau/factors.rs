@@ -12,7 +12,7 @@ use crate::model::Arrow;
 #[derive(Clone, Debug)]
 pub(crate) struct Factors<const S: usize> {
     /// `mu / h`.
-    shift: [f64; S],
+    pub(crate) shift: [f64; S],
     /// `1 / g_j` of the diagonal `g_j`.
     diagonal: Vec<[f64; S]>,
     /// `(w r_j + e_j) / g_j` over the pivot of the rank-one part.
@@ -53,11 +53,6 @@ impl<const S: usize> Factors<S> {
             *row = times(row, &pivot);
         }
         self.shift = shift;
-    }
-
-    /// `mu / h`.
-    pub(crate) fn shift(&self) -> &[f64; S] {
-        &self.shift
     }
 
     /// Solves for every wall and eigenvalue, in place.
@@ -120,7 +115,7 @@ mod tests {
                 (0..5).map(|j| std::array::from_fn(|k| ((3 * j + 5 * k) as f64).sin())).collect();
             let mut x = right.clone();
             factors.solve(&mut x);
-            let w = *factors.shift();
+            let w = factors.shift;
             let mut shared = [0.0; 5];
             for j in 0..5 {
                 let part = times(&scaled(&w, arrow.pressure_by_rate[j], arrow.pressure_by_lumen[j]), &x[j]);

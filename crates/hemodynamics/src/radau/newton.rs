@@ -99,7 +99,7 @@ impl<const S: usize> Stepper<S> {
         bounds: &Bounds,
     ) -> Result<(), Attempt> {
         let walls = self.along.len();
-        let shift = *self.factors.shift();
+        let shift = self.factors.shift;
         let mut before = f64::INFINITY;
         // The Jacobian of the middle is as far from the stages as the step is long.
         let mut expected = softened(self.contraction) * (step / self.last_step).max(1.0);

@@ -8,7 +8,8 @@ use crate::posture::Angle;
 /// Sums of the pairs, centred as they come (Welford 1962, doi:10.1080/00401706.1962.10490022).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pairs {
-    count: u64,
+    /// How many there were.
+    pub(super) count: u64,
     mean: [f64; 2],
     /// Sums of squares and products: xx, xy, yy.
     squares: [f64; 3],
@@ -29,11 +30,6 @@ pub struct CouplingLine {
 }
 
 impl Pairs {
-    /// How many there were.
-    pub(super) fn count(&self) -> u64 {
-        self.count
-    }
-
     pub(super) fn push(&mut self, x: Angle, y: Angle) {
         self.count += 1;
         let n = self.count as f64;

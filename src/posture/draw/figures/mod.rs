@@ -104,7 +104,7 @@ impl AngleFigures {
         let (Some(coupling), Some([x, y])) = (&self.coupling, self.coupled_joints()) else { return Ok(false) };
         let drawn = if coupling.every == 1 { String::new() } else { format!(", one of {} drawn", coupling.every) };
         let mut items = vec![Item::Dots {
-            name: Some(format!("{} frames{drawn}", coupling.pairs.count())),
+            name: Some(format!("{} frames{drawn}", coupling.pairs.count)),
             points: coupling.dots.clone(),
             colour: 5,
         }];
@@ -134,7 +134,7 @@ impl AngleFigures {
 
 impl Coupling {
     fn push(&mut self, x: Angle, y: Angle) {
-        if self.pairs.count().is_multiple_of(self.every) {
+        if self.pairs.count.is_multiple_of(self.every) {
             if self.dots.len() == MOST_DOTS {
                 self.every *= 2;
                 let mut keep = false;
@@ -143,7 +143,7 @@ impl Coupling {
                     keep
                 });
             }
-            if self.pairs.count().is_multiple_of(self.every) {
+            if self.pairs.count.is_multiple_of(self.every) {
                 self.dots.push([x.rad.to_degrees(), y.rad.to_degrees()]);
             }
         }

@@ -61,7 +61,8 @@ pub(in crate::posture) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 pub(crate) struct Finder {
     grid: Grid,
     tree: Tree,
-    samples: u64,
+    /// Grid samples looked at so far.
+    pub(crate) samples: u64,
 }
 
 impl Finder {
@@ -83,11 +84,6 @@ impl Finder {
         for spot in self.tree.found.iter().filter(|spot| !self.grid.cuts(spot)) {
             blobs.push(self.grid.blob(frame, spot));
         }
-    }
-
-    /// Grid samples looked at so far.
-    pub(crate) fn samples(&self) -> u64 {
-        self.samples
     }
 }
 
