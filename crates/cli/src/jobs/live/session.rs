@@ -154,15 +154,7 @@ pub(crate) fn run_stream(
     let PredictChoices { gate, intervals, rows } = given.options.clone();
     let stop = common.start()?;
     let options = LiveOptions {
-        stream: StreamOptions {
-            source: vec![OfFinger::any("-".parse()?)],
-            force: Vec::new(),
-            volts_per_count: None,
-            names: None,
-            keep: Vec::new(),
-            seconds: None,
-            log: rows.log,
-        },
+        stream: StreamOptions { source: vec![OfFinger::any("-".parse()?)], log: rows.log, ..StreamOptions::default() },
         answer: AnswerOptions { gate, intervals, keep_faults: rows.keep_faults },
         tcp: None,
         lsl: None,
