@@ -98,7 +98,7 @@ impl Companion {
         let Some(&after_s) = self.times_s.get(1) else {
             return if self.ended { Known::Never } else { Known::NotYet };
         };
-        let most_s = self.period.median_s().map_or(UNKNOWN_GAP_S, |period_s| GAP_PERIODS * period_s);
+        let most_s = self.period.median_s.map_or(UNKNOWN_GAP_S, |period_s| GAP_PERIODS * period_s);
         if after_s - before_s > most_s || self.begins[1] {
             return Known::Never;
         }

@@ -8,7 +8,8 @@ use ndarray::{Array2, Zip};
 /// What has been seen of one pose.
 #[derive(Debug, Clone)]
 pub(super) struct ExactMaps {
-    count: Array2<u32>,
+    /// How many were seen.
+    pub(super) count: Array2<u32>,
     mean: Array2<f64>,
     squares: Array2<f64>,
 }
@@ -46,11 +47,6 @@ impl ExactMaps {
             .and(&self.squares)
             .map_collect(|&n, &squares| if n < 2 { f32::NAN } else { (squares / f64::from(n - 1)).sqrt() as f32 })
     }
-
-    /// How many were seen.
-    pub(super) fn count(&self) -> &Array2<u32> {
-        &self.count
-    }
 }
 
 #[cfg(test)]
@@ -66,7 +62,7 @@ mod tests {
             maps.add(&picture);
         }
         let (mean, sd) = (maps.mean(), maps.sd());
-        assert_eq!(maps.count(), &array![[2, 2], [1, 0]]);
+        assert_eq!(maps.count, array![[2, 2], [1, 0]]);
         assert_eq!([mean[[0, 0]], mean[[0, 1]], mean[[1, 0]]], [2.0, 2.0, 5.0]);
         assert_eq!([sd[[0, 0]], sd[[0, 1]]], [2.0_f32.sqrt(), 0.0]);
         assert!(mean[[1, 1]].is_nan() && sd[[1, 0]].is_nan() && sd[[1, 1]].is_nan());

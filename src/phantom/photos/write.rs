@@ -132,7 +132,7 @@ fn draw_all(options: &PhotoOptions, stage: &Path, watch: &Watch<'_>) -> Result<S
         }
         write_npy(&maps_folder.join(format!("{pose}-mean.npy")), &maps.mean())?;
         write_npy(&maps_folder.join(format!("{pose}-sd.npy")), &maps.sd())?;
-        write_npy(&maps_folder.join(format!("{pose}-count.npy")), maps.count())?;
+        write_npy(&maps_folder.join(format!("{pose}-count.npy")), &maps.count)?;
     }
     write_table(&stage.join("truth/nails.csv"), &summary.photographs)?;
     write_record(&stage.join(RECORD), options)?;

@@ -285,7 +285,7 @@ impl Spots {
     pub(super) fn siting(&self, header: Option<Siting>) -> Siting {
         let evidence = self.evidence.as_ref();
         let measured = evidence.and_then(SitingEvidence::siting).or(header);
-        measured.or(evidence.map(SitingEvidence::assumed)).unwrap_or(Siting { dx_px: 0.0, dy_px: 0.0 })
+        measured.or(evidence.map(|evidence| evidence.assumed)).unwrap_or(Siting { dx_px: 0.0, dy_px: 0.0 })
     }
 }
 

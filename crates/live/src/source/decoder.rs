@@ -143,7 +143,7 @@ impl Decoder {
     /// Whether rows carry checksums: a device makes them, for a link that may damage rows.
     pub(in crate::source) fn is_sealed(&self) -> bool {
         match self {
-            Self::Lines(lines) => lines.checksum().is_some(),
+            Self::Lines(lines) => lines.checksum.is_some(),
             Self::Frames(_) => true,
             Self::Table(_) => false,
         }

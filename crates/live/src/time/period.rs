@@ -8,7 +8,8 @@ const STEPS: usize = 32;
 pub struct Period {
     steps_s: [f64; STEPS],
     filled: usize,
-    median_s: Option<f64>,
+    /// The median step, seconds; none before three steps.
+    pub median_s: Option<f64>,
 }
 
 impl Period {
@@ -30,12 +31,6 @@ impl Period {
             self.filled = 0;
         }
     }
-
-    /// The median step, seconds; none before three steps.
-    #[must_use]
-    pub fn median_s(&self) -> Option<f64> {
-        self.median_s
-    }
 }
 
 #[cfg(test)]
@@ -45,12 +40,12 @@ mod tests {
     #[test]
     fn gaps_and_repeats_do_not_move_the_median() {
         let mut period = Period::default();
-        assert_eq!(period.median_s(), None);
+        assert_eq!(period.median_s, None);
         for row in 0..1000 {
             period.push(if row % 7 == 0 { 5.0 } else { 0.001 });
             period.push(0.0);
             period.push(f64::NAN);
         }
-        assert_eq!(period.median_s(), Some(0.001));
+        assert_eq!(period.median_s, Some(0.001));
     }
 }

@@ -150,7 +150,7 @@ impl Sequence {
     /// The time from row to row, seconds; none before it is known.
     #[must_use]
     pub fn period_s(&self) -> Option<f64> {
-        self.period.median_s()
+        self.period.median_s
     }
 
     /// Whether rows have a time of their own.
@@ -162,7 +162,7 @@ impl Sequence {
     /// Rows counted so far.
     #[must_use]
     pub fn counts(&self) -> RowCounts {
-        RowCounts { wraps: self.clock.as_ref().map_or(0, |(unwrap, _)| unwrap.wraps()), ..self.counts }
+        RowCounts { wraps: self.clock.as_ref().map_or(0, |(unwrap, _)| unwrap.wraps), ..self.counts }
     }
 
     /// The stream's time now: the latest row's, and of live streams what the host saw pass since; NaN before any.

@@ -35,7 +35,8 @@ pub struct Unwrap {
     base: f64,
     whole: bool,
     bits: Option<u32>,
-    wraps: u64,
+    /// How often it wrapped.
+    pub wraps: u64,
 }
 
 impl Unwrap {
@@ -43,12 +44,6 @@ impl Unwrap {
     #[must_use]
     pub fn new(per_second: f64) -> Self {
         Self { per_second, last: None, base: 0.0, whole: true, bits: None, wraps: 0 }
-    }
-
-    /// How often it wrapped.
-    #[must_use]
-    pub fn wraps(&self) -> u64 {
-        self.wraps
     }
 
     /// Reads a stamp; one that is [`Reading::Back`] changes nothing.
@@ -110,7 +105,7 @@ mod tests {
             let read = unwrap.read(stamp, Expected { host_s: Some(0.01), period_s: Some(0.01) });
             assert_eq!(read, Reading::On(true_us as f64), "row {row}");
         }
-        assert_eq!(unwrap.wraps(), 3);
+        assert_eq!(unwrap.wraps, 3);
     }
 
     #[test]

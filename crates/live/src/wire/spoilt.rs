@@ -57,16 +57,11 @@ pub struct SpoiltRows {
 /// Spoilt rows by kind, in the order in which the kinds first came.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
-    kinds: Vec<SpoiltRows>,
+    /// Spoilt rows of each kind that came.
+    pub kinds: Vec<SpoiltRows>,
 }
 
 impl Tally {
-    /// Spoilt rows of each kind that came.
-    #[must_use]
-    pub fn kinds(&self) -> &[SpoiltRows] {
-        &self.kinds
-    }
-
     /// Rows of one kind.
     #[must_use]
     pub fn count(&self, kind: Spoil) -> u64 {

@@ -52,7 +52,7 @@ pub(crate) fn write(options: &PressOptions, out: &Path) -> anyhow::Result<()> {
     for (recorded, path) in recorded.iter().zip([slow, quick]) {
         table(recorded, options.site, &path)?;
     }
-    fs::write(&parameters, person.parameters().to_toml()).map_err(refused(&parameters))?;
+    fs::write(&parameters, person.parameters.to_toml()).map_err(refused(&parameters))?;
     write_record(&record, &serde_json::json!({ "options": options }))?;
     Ok(staging.commit_exactly(&RESULTS)?)
 }

@@ -42,7 +42,8 @@ pub(crate) const FIRST_SEED: u64 = 430;
 #[derive(Debug, Clone)]
 pub(crate) struct Person {
     name: String,
-    parameters: Parameters,
+    /// The values that are true of them.
+    pub(crate) parameters: Parameters,
     seed: u64,
 }
 
@@ -93,12 +94,6 @@ impl Person {
     #[must_use]
     pub(crate) fn middle() -> Option<Parameters> {
         scaled(&Parameters::thesis(), &Self::TUNED)
-    }
-
-    /// The values that are true of them.
-    #[must_use]
-    pub(crate) fn parameters(&self) -> &Parameters {
-        &self.parameters
     }
 
     /// The photodiode of the pressed place over a force from 0 to 2 N and back, slowly: an average of three cycles.

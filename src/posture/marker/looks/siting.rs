@@ -33,7 +33,8 @@ const LEAST_SD_PX: f64 = 0.05;
 /// What fits made with one siting tell of the true one.
 #[derive(Debug, Clone)]
 pub(crate) struct SitingEvidence {
-    assumed: Siting,
+    /// The siting that fits are made with.
+    pub(crate) assumed: Siting,
     subsampling: (usize, usize),
     fits: usize,
     weight: f64,
@@ -60,11 +61,6 @@ impl SitingEvidence {
             self.sum[axis] += weight * along;
             self.squares[axis] += weight * along * along;
         }
-    }
-
-    /// The siting that fits are made with.
-    pub(crate) fn assumed(&self) -> Siting {
-        self.assumed
     }
 
     /// The siting, where the fits agree on one.

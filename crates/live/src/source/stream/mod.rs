@@ -299,7 +299,7 @@ impl Stream {
             host_start_unix_s: self.host_start_unix_s,
             counts: sequence.map(Sequence::counts).unwrap_or_default(),
             rate_hz: self.period_s().map(f64::recip),
-            spoilt: self.decoder.decoded().tally.kinds().to_vec(),
+            spoilt: self.decoder.decoded().tally.kinds.clone(),
             gaps: self.gaps.first.clone(),
             gaps_count: self.gaps.count,
             longest_gap_s: self.gaps.longest_s,
@@ -341,7 +341,7 @@ impl Stream {
     }
 
     fn spoilt(&self, kind: Spoil, on: &mut Sink<'_>) {
-        let first = self.decoder.decoded().tally.kinds().iter().find(|rows| rows.kind == kind && rows.count == 1);
+        let first = self.decoder.decoded().tally.kinds.iter().find(|rows| rows.kind == kind && rows.count == 1);
         on(Event::Spoilt { kind, first });
     }
 

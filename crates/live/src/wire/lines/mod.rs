@@ -43,7 +43,8 @@ pub struct Lines {
     decoded: Decoded,
     separator: Separator,
     numbers: Numbers,
-    checksum: Option<Checksum>,
+    /// How rows are protected; none where they are not.
+    pub(crate) checksum: Option<Checksum>,
     volts_per_count: Option<f64>,
     /// The beginning of a line whose end has not come.
     carry: Vec<u8>,
@@ -357,11 +358,5 @@ impl Lines {
     #[must_use]
     pub fn decoded(&self) -> &Decoded {
         &self.decoded
-    }
-
-    /// How rows are protected; none where they are not.
-    #[must_use]
-    pub fn checksum(&self) -> Option<Checksum> {
-        self.checksum
     }
 }

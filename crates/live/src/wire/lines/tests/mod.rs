@@ -80,8 +80,8 @@ fn a_spoilt_row_costs_itself() {
     assert_eq!((&found[1], &found[8]), (&rows[0].to_owned(), &rows[1].to_owned()));
     let tally = &decoder.decoded().tally;
     assert_eq!((tally.count(Spoil::Cells), tally.count(Spoil::Unreadable), tally.spoilt()), (3, 3, 6));
-    assert_eq!((tally.kinds()[0].line, tally.kinds()[0].text.as_str()), (3, "1,1,1"));
-    assert_eq!((tally.kinds()[1].line, tally.kinds()[1].text.as_str()), (5, "3,1,x,2"));
+    assert_eq!((tally.kinds[0].line, tally.kinds[0].text.as_str()), (3, "1,1,1"));
+    assert_eq!((tally.kinds[1].line, tally.kinds[1].text.as_str()), (5, "3,1,x,2"));
 }
 
 #[test]
