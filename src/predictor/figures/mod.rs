@@ -2,8 +2,8 @@
 //! eigennails, bars that compare models and sets (Fig. 105-113), errors over the number of photodiodes and of training
 //! rows.
 //!
-//! In: plain numbers with their names; NaN is not known and leaves a gap. Out: a PNG and an SVG. The same numbers give
-//! the same bytes. Many rows are thinned, files do not grow with them.
+//! In: plain numbers with their names; NaN is not known and leaves a gap. Out: a PNG and an SVG, or the charts
+//! of one. The same numbers give the same bytes. Many rows are thinned, files do not grow with them.
 
 mod bars;
 mod curves;
