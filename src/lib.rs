@@ -48,6 +48,8 @@ pub mod table;
 pub mod timebase;
 mod toml_file;
 pub mod tradeoff;
+#[cfg(test)]
+mod trial;
 pub mod video;
 pub mod vision;
 pub mod words;

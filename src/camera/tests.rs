@@ -1,13 +1,11 @@
 //! Lenses from corners with known errors: how far off, and whether the standard errors say so.
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 
 use super::board::BoardSize;
 use super::fit::{Fit, OF_LENS, fit};
 use crate::phantom::board::{BoardOptions, Scene};
+use crate::trial::normals;
 use crate::vision::{Corners, Intrinsics, undistorted};
 
 const BOARD: BoardSize = BoardSize { columns: 9, rows: 6 };
@@ -32,16 +30,13 @@ fn options(seed: u64, views: usize) -> BoardOptions {
 /// The corners of a scene's views, with errors.
 fn corners(options: &BoardOptions, noise_px: f64) -> Vec<Corners> {
     let scene = Scene::new(options.clone()).unwrap();
-    let mut random = ChaCha8Rng::seed_from_u64(options.seed + 1000);
-    let mut off = |at: f64| -> f32 {
-        let noise: f64 = StandardNormal.sample(&mut random);
-        (at + noise_px * noise) as f32
-    };
+    let mut normal = normals(options.seed + 1000);
+    let mut off = |at: f64| (at + noise_px * normal()) as f32;
     scene.views().iter().map(|view| scene.corners_px(view).into_iter().map(|at| at.map(&mut off)).collect()).collect()
 }
 
-fn fitted(options: &BoardOptions, noise_px: f64) -> Fit {
-    fit(&BOARD.points_mm(20.0), &corners(options, noise_px), SIZE, 5).unwrap().expect("a lens")
+fn fitted(views: &[Corners], coefficients: usize) -> Fit {
+    fit(&BOARD.points_mm(20.0), views, SIZE, coefficients).unwrap().expect("a lens")
 }
 
 fn parameters(lens: &Intrinsics) -> [f64; OF_LENS] {
@@ -78,7 +73,7 @@ fn undistorted_gap(fit: &Fit, truth: &[f64; OF_LENS]) -> Gap {
 
 #[test]
 fn without_errors_the_lens_is_exact() {
-    let fit = fitted(&options(1, 8), 0.0);
+    let fit = fitted(&corners(&options(1, 8), 0.0), 5);
     let errors: Vec<f64> =
         parameters(&fit.lens).iter().zip(TRUTH).map(|(found, truth)| (found - truth).abs()).collect();
     // Corners are rounded to 32 bits, 6e-5 px; measured 0.01 px and 2e-4.
@@ -112,8 +107,7 @@ fn many(coefficients: usize, noise_px: f64) -> Many {
     let mut claimed = 0.0;
     for seed in 0..SEEDS {
         let options = BoardOptions { distortion: truth[4..].to_vec(), ..options(seed, 12) };
-        let fit =
-            fit(&BOARD.points_mm(20.0), &corners(&options, noise_px), SIZE, coefficients).unwrap().expect("a lens");
+        let fit = fitted(&corners(&options, noise_px), coefficients);
         let (found, sd) = (parameters(&fit.lens), fit.sd());
         for k in 0..OF_LENS {
             let off = (found[k] - truth[k]).abs();
@@ -163,7 +157,7 @@ fn the_planes_standard_error_holds_the_truth() {
     let mut held = 0;
     for seed in 0..SEEDS {
         let options = options(seed, 12);
-        let fit = fitted(&options, NOISE_PX);
+        let fit = fitted(&corners(&options, NOISE_PX), 5);
         let truth = *Scene::new(options).unwrap().views().last().unwrap();
         let truth = -(truth.rotation * Vector3::z());
         let view = fit.views.last().unwrap();
@@ -180,7 +174,7 @@ fn the_planes_standard_error_holds_the_truth() {
 #[test]
 fn standard_errors_are_opencvs_with_twice_the_points() {
     let views = corners(&options(3, 12), NOISE_PX);
-    let fit = fit(&BOARD.points_mm(20.0), &views, SIZE, 5).unwrap().expect("a lens");
+    let fit = fitted(&views, 5);
     let opencv = crate::vision::opencvs_sd(&BOARD.points_mm(20.0), &views, SIZE).unwrap();
     let (points, free) = (12.0 * 54.0, 12.0 * 6.0 + 9.0);
     let divisor: f64 = (2.0 * points - free) / (points - free);

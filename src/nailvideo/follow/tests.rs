@@ -155,12 +155,10 @@ fn a_frame_that_is_the_template_s_own_to_the_bit_fits() {
 mod real_data {
     use super::*;
     use crate::real_data::real_data;
+    use crate::trial::normals;
     use crate::video::Picture;
     use image::{GrayImage, Luma};
     use imageproc::region_labelling::{Connectivity, connected_components};
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
     use rayon::prelude::*;
 
     const FRAMES: usize = 30;
@@ -181,7 +179,7 @@ mod real_data {
     /// A photograph enlarged about a nail and moved, brighter in one half of the nail, with noise.
     fn shown(photo: &GrayImage, back: &Affine, nail: &Affine, pressed: f64, noise: f64, seed: u64) -> Picture {
         let mut picture = Picture::new(Scene::new(100.0, 0).format);
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = normals(seed);
         let last = [photo.width() - 1, photo.height() - 1];
         for (k, level) in picture.planes[0].iter_mut().enumerate() {
             let at = back.of([(k % 640) as f64, (k / 640) as f64]);
@@ -190,8 +188,7 @@ mod real_data {
             // Beyond it, under a thousandth.
             let zone = || Scene::zone([u, v]) / (1.0 + (12.0 * (u.hypot(v) - 1.0)).exp());
             let zone = if pressed > 0.0 && u.abs() < 1.6 && v.abs() < 1.6 { zone() } else { 0.0 };
-            let random: f64 = StandardNormal.sample(&mut random);
-            let luma = bilinear(photo, x, y) * (1.0 + 0.2 * pressed * zone) + noise * random;
+            let luma = bilinear(photo, x, y) * (1.0 + 0.2 * pressed * zone) + noise * normal();
             *level = luma.round().clamp(0.0, 255.0) as u8;
         }
         picture

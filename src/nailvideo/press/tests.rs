@@ -1,21 +1,17 @@
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
+use crate::trial::normals;
 
 const RATE_HZ: f64 = 30.0;
 const SEEDS: u64 = 150;
 
 /// A press at 3 s and a release at 6 s, or none, in noise with first-order correlation `rho`.
 fn trace(step: f64, taus: [f64; 2], release_s: f64, rho: f64, until_s: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut normal = normals(seed);
     let onset = 3.0 + (seed % 97) as f64 / 97.0 / RATE_HZ;
     let mut carried = 0.0;
     let time_s: Vec<f64> = (0..(until_s * RATE_HZ) as usize).map(|k| k as f64 / RATE_HZ).collect();
     let values = time_s.iter().map(|&t| {
-        let fresh: f64 = StandardNormal.sample(&mut random);
-        carried = rho * carried + (1.0 - rho * rho).sqrt() * fresh;
+        carried = rho * carried + (1.0 - rho * rho).sqrt() * normal();
         let rise = |at: f64, tau: f64| if t > at { 1.0 - (-(t - at) / tau).exp() } else { 0.0 };
         let reached = rise(onset, taus[0]).min(1.0);
         let level = if t > release_s { rise(onset, taus[0]) * (1.0 - rise(release_s, taus[1])) } else { reached };
@@ -172,15 +168,14 @@ fn a_ramp_shorter_than_a_frame_has_an_onset() {
     const PARTS: u32 = 20;
     let (mut held, mut widest) = (0, 0.0);
     for seed in 0..100 {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = normals(seed);
         let onset_s = seed as f64 / 100.0 / RATE_HZ;
         let ramp_s = (seed % 5 + 1) as f64 / 5.0 / RATE_HZ;
         let time_s: Vec<f64> = (-60..90).map(|k| f64::from(k) / RATE_HZ).collect();
         let values = time_s.iter().map(|t| {
-            let noise: f64 = StandardNormal.sample(&mut random);
             let since_s = |part: u32| t - onset_s - ramp_s * (f64::from(part) + 0.5) / f64::from(PARTS);
             let reached = (0..PARTS).map(|part| 1.0 - (-since_s(part).max(0.0) / 0.2).exp());
-            100.0 * reached.sum::<f64>() / f64::from(PARTS) + noise
+            100.0 * reached.sum::<f64>() / f64::from(PARTS) + normal()
         });
         let onset = fit(&time_s, &values.collect::<Vec<f64>>(), 0.0, None).expect("a course").onset_s;
         held += usize::from(onset.low <= onset_s && onset_s <= onset.high);

@@ -55,11 +55,8 @@ impl Noise {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::trial::normals;
 
     /// Of an SD of 1; measured 0.996 to 1.029 (0.996 without, 1.011 to 1.029 with common waves).
     const LARGEST_ERROR: f64 = 0.05;
@@ -67,8 +64,7 @@ mod tests {
     /// The SD of noise 1, correlated over frames by `rho`, in discs that `common` waves move together.
     fn sd(common: usize, rho: f64, frames: usize) -> Option<f64> {
         const DISCS: usize = 60;
-        let mut random = ChaCha8Rng::seed_from_u64(7);
-        let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
+        let mut normal = normals(7);
         let ways: Vec<Vec<f64>> = (0..common).map(|_| (0..DISCS).map(|_| normal()).collect()).collect();
         let mut noise = Noise::new(DISCS);
         let mut carried: Vec<f64> = (0..DISCS).map(|_| normal()).collect();

@@ -1,13 +1,11 @@
 use std::path::Path;
 
 use nalgebra::{Matrix2, Vector2};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
 use crate::posture::Centre;
 use crate::posture::marker::sight::Loss;
+use crate::trial::normals;
 use crate::video::Turn;
 
 const WIDTH: usize = 1280;
@@ -272,8 +270,6 @@ fn monte_carlo(
     joint: usize,
 ) -> (f64, f64) {
     const DRAWS: usize = 20_000;
-    let mut random = ChaCha8Rng::seed_from_u64(7);
-    let info = UPRIGHT;
     let sights = |at: &[[f64; 2]]| -> Vec<Sight> {
         let mut sights: Vec<Sight> = at.iter().enumerate().map(|(k, &p)| seen_with(p, covariance(k))).collect();
         sights.resize(8, Sight::Lost(Loss::NotFound));
@@ -286,7 +282,7 @@ fn monte_carlo(
             Matrix2::new(xx, xy, xy, yy).cholesky().unwrap().l()
         })
         .collect();
-    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut normal = normals(7);
     let (mut squares, mut within, mut known) = (0.0, 0, 0);
     for _ in 0..DRAWS {
         let drawn: Vec<[f64; 2]> = points

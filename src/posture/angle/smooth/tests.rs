@@ -1,8 +1,5 @@
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
+use crate::trial::normals;
 
 /// How a series is drawn.
 #[derive(Clone, Copy)]
@@ -60,8 +57,7 @@ struct Series {
 }
 
 fn draw(drawn: Drawn, seed: u64) -> Series {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
+    let mut normal = normals(seed);
     let mut series = Series { times_s: Vec::new(), truth: Vec::new(), angles: Vec::new() };
     let mut slow = normal();
     let (mut time, mut last) = (0.0, 0.0);

@@ -71,11 +71,8 @@ impl Pairs {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::trial::normals;
 
     fn angle(deg: f64, sd_deg: f64) -> Angle {
         Angle { rad: deg.to_radians(), sd_rad: sd_deg.to_radians(), lasting_sd_rad: 0.0 }
@@ -96,8 +93,7 @@ mod tests {
 
     #[test]
     fn errors_of_both_angles_do_not_flatten_the_line() {
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut normal = normals(1);
         let (mut pairs, mut flat) = (Pairs::default(), [0.0; 2]);
         for k in 0..20_000 {
             let x = 10.0 * (f64::from(k) * 0.01).sin();
