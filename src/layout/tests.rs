@@ -1,7 +1,7 @@
 //! The job from tables and maps that it has an exact answer to, and what it refuses.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use image::{GrayAlphaImage, LumaA};
 use ndarray::Array2;
@@ -12,23 +12,14 @@ use crate::job::{Outputs, Watch, read};
 use crate::nail::Positions;
 use crate::predictor::DataFile;
 use crate::table::Table;
+use crate::trial::Folder;
 
 /// Of few operations on tables of 9 digits.
 const NEAR: f64 = 1e-6;
 
-struct Folder(tempfile::TempDir);
-
 impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
     fn write(&self, name: &str, text: &str) -> &Self {
-        std::fs::write(self.path(name), text).unwrap();
+        self.file(name, text);
         self
     }
 
@@ -76,6 +67,32 @@ fn plain(_: usize, _: usize, value: f64) -> String {
     format!("{value:.9}")
 }
 
+/// Readings with noise of `size`.
+fn noisy(size: f64) -> impl Fn(usize, usize, f64) -> String {
+    move |row, k, value| plain(row, k, value + size * wave(7 * row + 3, k + 40))
+}
+
+/// A table with its rows changed.
+fn changed(text: &str, change: impl Fn(&mut Vec<String>)) -> String {
+    let (head, rows) = text.split_once('\n').unwrap();
+    let row = |line: &str| {
+        let mut row: Vec<String> = line.split(',').map(str::to_owned).collect();
+        change(&mut row);
+        row.join(",") + "\n"
+    };
+    format!("{head}\n{}", rows.lines().map(row).collect::<String>())
+}
+
+/// Eight photodiodes in the rows that are read, and an angle that the seventh explains; `cell` of row and photodiode.
+fn photodiodes(rows: impl Iterator<Item = usize>, cell: impl Fn(usize, usize) -> String) -> String {
+    let mut text = "time_s,P1,P2,P3,P4,P5,P6,P7,P8,J2_deg\n".to_owned();
+    for row in rows {
+        let cells: Vec<String> = (0..8).map(|k| cell(row, k)).collect();
+        writeln!(text, "{row},{},{:.9}", cells.join(","), 3.0 * wave(row, 6)).unwrap();
+    }
+    text
+}
+
 #[test]
 fn the_two_cells_that_explain_the_forces_are_found_where_they_lie() {
     let folder = Folder::new();
@@ -108,17 +125,7 @@ fn the_two_cells_that_explain_the_forces_are_found_where_they_lie() {
 #[test]
 fn a_file_that_contradicts_the_others_is_named_and_a_time_that_is_no_number_is_none() {
     let folder = Folder::new();
-    let noisy = |row: usize, k: usize, value: f64| format!("{:.9}", value + 0.1 * wave(7 * row + 3, k + 40));
-    let [a, b, c] = [0, 1, 2].map(|person| cells(person, 400, noisy));
-    let changed = |text: &str, change: &dyn Fn(&mut Vec<String>)| {
-        let (head, rows) = text.split_once('\n').unwrap();
-        let row = |line: &str| {
-            let mut row: Vec<String> = line.split(',').map(str::to_owned).collect();
-            change(&mut row);
-            row.join(",") + "\n"
-        };
-        format!("{head}\n{}", rows.lines().map(row).collect::<String>())
-    };
+    let [a, b, c] = [0, 1, 2].map(|person| cells(person, 400, noisy(0.1)));
     let run = |c: &str| {
         folder.write("a.csv", &a).write("b.csv", &b).write("c.csv", c);
         folder.run(&["a.csv", "b.csv", "c.csv"], "k = '2'").unwrap()
@@ -126,10 +133,10 @@ fn a_file_that_contradicts_the_others_is_named_and_a_time_that_is_no_number_is_n
     let contradicted = |report: &LayoutReport| report.warnings.iter().any(|said| said.contains("contradicts"));
     let as_it_is = run(&c);
     assert!(!contradicted(&as_it_is), "{:?}", as_it_is.warnings);
-    let negated = run(&changed(&c, &|row| row[1] = (-row[1].parse::<f64>().unwrap()).to_string()));
+    let negated = run(&changed(&c, |row| row[1] = (-row[1].parse::<f64>().unwrap()).to_string()));
     let said = "c.csv contradicts the other files: in it Fx_N looks to have the other sign";
     assert!(negated.warnings.iter().any(|warning| warning.starts_with(said)), "{:?}", negated.warnings);
-    let by_clock = run(&changed(&c, &|row| row[0] = "12:30:01".to_owned()));
+    let by_clock = run(&changed(&c, |row| row[0] = "12:30:01".to_owned()));
     assert_eq!(by_clock.chosen.candidates, as_it_is.chosen.candidates);
 }
 
@@ -138,8 +145,7 @@ fn a_column_of_subjects_is_as_good_as_a_file_for_each_and_threads_change_nothing
     let (apart, together) = (Folder::new(), Folder::new());
     let mut all = String::new();
     for (person, name) in ["a", "b", "c"].iter().enumerate() {
-        let noisy = |row: usize, k: usize, value: f64| format!("{:.9}", value + 0.1 * wave(7 * row + 3, k + 40));
-        let own = cells(person, 120, noisy);
+        let own = cells(person, 120, noisy(0.1));
         apart.write(&format!("{name}.csv"), &own);
         for (at, line) in own.lines().enumerate() {
             match at {
@@ -187,15 +193,11 @@ fn cells_outside_of_the_outline_are_left_out_and_hidden_rows_counted() {
 fn photodiodes_are_not_read_where_the_sensor_had_a_fault() {
     let folder = Folder::new();
     let table = |read: &dyn Fn(usize) -> bool, status: &dyn Fn(usize) -> &'static str| {
-        let mut text = "time_s,P1,P2,P3,P4,P5,P6,P7,P8,J2_deg,sensor_status\n".to_owned();
-        for row in (0..200).filter(|row| read(*row)) {
-            write!(text, "{row}").unwrap();
-            // Where it is saturated P7 reads what it can at most.
-            let cell = |k: usize| if k == 6 && status(row) != "ok" { 5.0 } else { wave(row, k) };
-            (0..8).for_each(|k| write!(text, ",{:.9}", cell(k)).unwrap());
-            writeln!(text, ",{:.9},{}", 3.0 * wave(row, 6), status(row)).unwrap();
-        }
-        text
+        // Where it is saturated P7 reads what it can at most.
+        let value = |row: usize, k: usize| if k == 6 && status(row) != "ok" { 5.0 } else { wave(row, k) };
+        let all = photodiodes((0..200).filter(|row| read(*row)), |row, k| plain(row, k, value(row, k)));
+        let with_status = changed(&all, |row| row.push(status(row[0].parse().unwrap()).to_owned()));
+        with_status.replacen("J2_deg", "J2_deg,sensor_status", 1)
     };
     let saturates = |row: usize| if row.is_multiple_of(10) { "saturated: P7" } else { "ok" };
     let run = |text: &str| folder.write("a.csv", text).run(&["a.csv"], "k = '1'").unwrap();
@@ -217,17 +219,8 @@ fn photodiodes_are_not_read_where_the_sensor_had_a_fault() {
 
 #[test]
 fn photodiodes_have_the_thesis_places_or_those_of_a_file() {
-    let eight = |change: fn(usize, usize, f64) -> String| {
-        let mut text = "time_s,P1,P2,P3,P4,P5,P6,P7,P8,J2_deg\n".to_owned();
-        for row in 0..100 {
-            write!(text, "{row}").unwrap();
-            (0..8).for_each(|k| write!(text, ",{}", change(row, k, wave(row, k))).unwrap());
-            writeln!(text, ",{:.9}", 3.0 * wave(row, 6)).unwrap();
-        }
-        text
-    };
     let folder = Folder::new();
-    folder.write("a.csv", &eight(plain));
+    folder.write("a.csv", &photodiodes(0..100, |row, k| plain(row, k, wave(row, k))));
     let report = folder.run(&["a.csv"], "k = '1'").unwrap();
     assert_eq!(report.chosen.candidates, ["P7"]);
     let thesis = Positions::thesis().photodiodes;
@@ -245,7 +238,8 @@ fn photodiodes_have_the_thesis_places_or_those_of_a_file() {
     let refused = folder.write("positions.toml", positions).refused(&["a.csv"], "k = '1'");
     assert!(refused.contains("P2") && refused.contains("positions.toml does not say"), "{refused}");
     std::fs::remove_file(folder.path("positions.toml")).unwrap();
-    let same = folder.write("a.csv", &eight(|row, _, _| wave(row, 0).to_string())).refused(&["a.csv"], "k = '1'");
+    let alike = photodiodes(0..100, |row, _| wave(row, 0).to_string());
+    let same = folder.write("a.csv", &alike).refused(&["a.csv"], "k = '1'");
     assert!(same.contains("a.csv: all photodiodes read the same"), "{same}");
 }
 
@@ -263,16 +257,8 @@ fn what_can_not_be_laid_out_is_refused_by_name() {
         &cells(0, 100, |row, k, value| if (row, k) == (7, 5) { "wet".to_owned() } else { plain(row, k, value) }),
     );
     folder.write("dead.csv", &cells(0, 100, |row, k, value| if k == 5 { String::new() } else { plain(row, k, value) }));
-    let still =
-        cells(0, 100, plain).replace("Fx_N", "Fy_N").lines().enumerate().fold(String::new(), |mut all, (at, line)| {
-            let mut cells: Vec<&str> = line.split(',').collect();
-            if at > 0 {
-                cells[2] = "-1.5";
-            }
-            writeln!(all, "{}", cells.join(",")).unwrap();
-            all
-        });
-    folder.write("still.csv", &still);
+    let still = cells(0, 100, plain).replace("Fx_N", "Fy_N");
+    folder.write("still.csv", &changed(&still, |row| row[2] = "-1.5".to_owned()));
     std::fs::create_dir(folder.path("empty")).unwrap();
     let cases: [(&[&str], &str, &[&str]); 18] = [
         (&["a.csv"], "k = '1..8'", &["8 photodiodes", "4 candidates"]),
@@ -400,8 +386,7 @@ fn poses_that_do_not_differ_are_confused_by_half_of_those_left_out() {
 #[test]
 fn pictures_show_the_places_and_the_errors() {
     let folder = Folder::new();
-    let noisy = |row: usize, k: usize, value: f64| format!("{:.9}", value + 0.3 * wave(7 * row + 3, k + 40));
-    folder.write("a.csv", &cells(0, 100, noisy)).write("b.csv", &cells(1, 100, noisy));
+    folder.write("a.csv", &cells(0, 100, noisy(0.3))).write("b.csv", &cells(1, 100, noisy(0.3)));
     let given = read::<LayoutOptions>(&"k = '1..3'\nchoose = 3".parse().unwrap(), "").unwrap();
     let data = ["a.csv", "b.csv"].map(|name| DataFile::from(folder.path(name))).to_vec();
     let outputs = Outputs { report: false, ..Outputs::all(folder.path("out")) };

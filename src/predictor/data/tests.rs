@@ -1,24 +1,9 @@
 use std::fmt::Write as _;
-use std::fs;
 
 use super::*;
 use crate::log::{AmbientOptions, Columns, Log, LogReading, samples};
 use crate::table::{Column, TableWriter, Value};
-
-/// A folder with files in it.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn file(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.path().join(name);
-        fs::write(&path, text).unwrap();
-        path
-    }
-}
+use crate::trial::Folder;
 
 fn plain() -> RowOptions {
     RowOptions::default()
@@ -32,8 +17,12 @@ fn forces() -> Wanted {
     Wanted { targets: ["Fx_N", "Fy_N", "Fz_N"].map(str::to_owned).to_vec(), ..Wanted::default() }
 }
 
+fn only(target: &str) -> Wanted {
+    Wanted { targets: vec![target.to_owned()], ..Wanted::default() }
+}
+
 fn angle() -> Wanted {
-    Wanted { targets: vec!["J2_deg".to_owned()], ..Wanted::default() }
+    only("J2_deg")
 }
 
 fn read(text: impl AsRef<[u8]>, wanted: &Wanted) -> Result<Read, DataError> {
@@ -233,7 +222,7 @@ fn parquet_is_read_like_csv() {
     let folder = Folder::new();
     let rows = 300;
     let value = |k: usize, p: usize| (k as f64 * 0.1 + p as f64).sin();
-    let paths = ["t.csv", "t.parquet"].map(|name| folder.0.path().join(name));
+    let paths = ["t.csv", "t.parquet"].map(|name| folder.path(name));
     for path in &paths {
         let mut columns = vec![Column::number("time_s")];
         columns.extend((1..=3).map(|p| Column::number(format!("P{p}"))));
@@ -330,7 +319,7 @@ fn voltages_alone_keep_every_row() {
     let path = folder.file("a.csv", "time_s,P2,P1,sensor_status\n0,2,1,ok\n1,,1,ok\n2,x,1,saturated: P1\n");
     let inputs = ["P1", "P2"].map(str::to_owned);
     assert!(read_inputs(&path, &inputs, &plain()).unwrap_err().to_string().contains("a.csv:4: column `P2`"));
-    let read = read_inputs(&path, &inputs, &RowOptions { drop_invalid: true, ..plain() }).unwrap();
+    let read = read_inputs(&path, &inputs, &dropping()).unwrap();
     assert_eq!((read.x.dim(), read.x[[0, 1]], read.x[[2, 0]]), ((3, 2), 2.0, 1.0));
     assert!(read.x[[1, 1]].is_nan() && read.x[[2, 1]].is_nan());
     assert_eq!((read.faulty, read.time_s), (vec![false, false, true], vec![0.0, 1.0, 2.0]));
@@ -369,14 +358,11 @@ fn a_log_is_one_whatever_its_led_and_columns_are_called() {
     assert_eq!((capital.data.x(), capital.files[0].rows), (same.data.x(), 200));
     let other = of("b.csv", "time_s,led,P1,P2,P3,Fx_N,Fy_N,Fz_N", "stamp,lamp,ch_3,ch_4,ch_5,fx,fy,load");
     let log = called("time_s=stamp,led=lamp,P1=ch_3,P2=ch_4,P3=ch_5,Fz_N=load");
-    let named = read_data(
-        std::slice::from_ref(&other),
-        &Wanted { rows: RowOptions { log: log.clone(), ..plain() }, ..forces() },
-    )
-    .unwrap();
-    assert_eq!((named.data.x(), named.data.y()), (same.data.x(), same.data.y()));
+    let rows = RowOptions { log, ..plain() };
     let inputs = ["P1", "P3"].map(str::to_owned);
-    let alone = read_inputs(&other, &inputs, &RowOptions { log: log.clone(), ..plain() }).unwrap();
+    let alone = read_inputs(&other, &inputs, &rows).unwrap();
+    let named = read_data(&[other], &Wanted { rows, ..forces() }).unwrap();
+    assert_eq!((named.data.x(), named.data.y()), (same.data.x(), same.data.y()));
     assert_eq!(alone.time_s.len(), 200);
     let rule = "interpolated between the unlit samples";
     assert!(alone.notes.iter().any(|note| note.contains(rule)), "{:?}", alone.notes);
@@ -387,8 +373,7 @@ fn a_file_that_cant_be_read_costs_itself_where_that_is_asked_for() {
     let folder = Folder::new();
     let good = folder.file("good.csv", "P1,J2_deg\n1,2\n2,3\n");
     let bad = folder.file("bad.csv", "P1,J2_deg\n1,x\n");
-    let lost = folder.0.path().join("lost.csv");
-    let all = [bad.clone(), good.clone(), lost];
+    let all = [bad.clone(), good.clone(), folder.path("lost.csv")];
     assert!(read_data(&all, &angle()).unwrap_err().to_string().contains("bad.csv:2"));
     let wanted = Wanted { skip_failed: true, ..angle() };
     let read = read_data(&all, &wanted).unwrap();
@@ -409,11 +394,7 @@ fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
     assert_eq!((table.data.inputs().len(), table.data.rows()), (COLUMNS, 2));
     let folder = Folder::new();
     let log = folder.file("log.csv", format!("time_s,led,{header},Fz_N\n0,1,{row}-1\n1,0,{row}-1\n2,1,{row}-1\n"));
-    let wanted = Wanted {
-        targets: vec!["Fz_N".to_owned()],
-        rows: RowOptions { keep_faults: true, ..plain() },
-        ..Wanted::default()
-    };
+    let wanted = Wanted { rows: RowOptions { keep_faults: true, ..plain() }, ..only("Fz_N") };
     assert!(read_data(&[log], &wanted).unwrap_err().to_string().contains("no row can be used"));
 }
 
@@ -429,7 +410,7 @@ fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
         }
         text
     };
-    let wanted = Wanted { targets: vec!["Fz_N".to_owned()], ..Wanted::default() };
+    let wanted = only("Fz_N");
     let said = |late_s: f64| read(recorded(late_s), &wanted).unwrap().warnings.join("; ");
     // Nearly a second is a nail's that refills slowly.
     assert_eq!([0.0, 0.2, -0.8].map(said), ["", "", ""]);
@@ -450,7 +431,7 @@ fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
 
 #[test]
 fn what_other_programs_write_above_the_names_is_not_read() {
-    let wanted = Wanted { targets: vec!["Fz_N".to_owned()], ..Wanted::default() };
+    let wanted = only("Fz_N");
     let rows = |per_second: f64| -> String {
         let row = |k: u32| format!("{},{},{},{}\n", f64::from(k) * 0.04 * per_second, 2.0, f64::from(k), -f64::from(k));
         (0..8).map(row).collect()

@@ -42,9 +42,7 @@ impl Folder {
             let [fx, fy, fz] = [0, 1, 2].map(|k| path(forces, t, k));
             writeln!(text, ",{:?},{:?},{fx},{fy},{}", at(8), at(27), fz - 2.0).unwrap();
         }
-        let path = self.path(name);
-        std::fs::write(&path, text).unwrap();
-        path
+        self.file(name, text)
     }
 
     /// What is said of a third file of cells beside two, its rows, of time, cells and forces, changed.
@@ -212,7 +210,7 @@ fn files_of_cells_that_contradict_the_others_are_named() {
 #[test]
 fn what_can_not_be_used_says_why() {
     let folder = Folder::new();
-    let volts = folder.file("volts.csv", 0.0, 1.0, true);
+    let volts = folder.recorded("volts.csv", 0.0, 1.0, true);
     let said = folder.nails(&[&volts], &[], OnScores::Ridge).unwrap_err();
     assert!(said.contains("has no cell `C_00_00`") && said.contains("nailvideo --cells"), "{said}");
     let a = folder.cells("a.csv", 1, 1, false);

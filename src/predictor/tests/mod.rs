@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use lunula_predictor::{By, Gate, Kind, OnScores, Recipe};
 
 use super::*;
+use crate::trial::Folder;
 
 /// Rows of a force and an angle seen by three photodiodes; `timed`: with a column of times.
 pub(crate) fn recording(rows: u32, phase: f64, scale: f64, timed: bool) -> String {
@@ -26,22 +27,15 @@ pub(crate) fn recording(rows: u32, phase: f64, scale: f64, timed: bool) -> Strin
     text
 }
 
-struct Folder(tempfile::TempDir);
-
 impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
     /// A recording of 60 rows.
-    fn file(&self, name: &str, phase: f64, scale: f64, timed: bool) -> PathBuf {
-        let path = self.path(name);
-        std::fs::write(&path, recording(60, phase, scale, timed)).unwrap();
-        path
+    fn recorded(&self, name: &str, phase: f64, scale: f64, timed: bool) -> PathBuf {
+        self.file(name, recording(60, phase, scale, timed))
+    }
+
+    /// Two recordings.
+    fn two(&self) -> [PathBuf; 2] {
+        [self.recorded("a.csv", 0.0, 1.0, true), self.recorded("b.csv", 0.5, 1.0, true)]
     }
 
     fn train(&self, inputs: &TrainInputs, target: &str, recipe: Recipe) -> Result<(PathBuf, TrainReport), String> {
@@ -66,7 +60,7 @@ fn linear() -> Recipe {
 #[test]
 fn what_is_reported_is_no_place_to_stop() {
     let folder = Folder::new();
-    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
+    let [a, b] = folder.two();
     let copy = folder.path("copy.csv");
     std::fs::copy(&b, &copy).unwrap();
     let recipe = Recipe { restarts: 1, max_epochs: 3, ..Recipe::new(Kind::Network { hidden: 2 }) };
@@ -77,7 +71,7 @@ fn what_is_reported_is_no_place_to_stop() {
 #[test]
 fn a_recording_under_two_names_is_told() {
     let folder = Folder::new();
-    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
+    let [a, b] = folder.two();
     let copy = folder.path("copy.csv");
     std::fs::copy(&a, &copy).unwrap();
     let (model, report) = folder.train(&inputs(&[&a, &copy], &[], &[]), "force", linear()).unwrap();
@@ -91,7 +85,7 @@ fn a_recording_under_two_names_is_told() {
 #[test]
 fn predictions_beyond_a_number_are_no_success() {
     let folder = Folder::new();
-    let (a, huge) = (folder.file("a.csv", 0.0, 1e-300, true), folder.file("b.csv", 0.5, 1e300, true));
+    let (a, huge) = (folder.recorded("a.csv", 0.0, 1e-300, true), folder.recorded("b.csv", 0.5, 1e300, true));
     let (model, report) = folder.train(&inputs(&[&a], &[&huge], &[]), "force", linear()).unwrap();
     assert!(report.warnings.iter().any(|w| w.contains("beyond 1e308")), "{:?}", report.warnings);
     let options = EvaluateOptions::default();
@@ -107,9 +101,9 @@ fn options() -> PredictOptions {
 #[test]
 fn lags_without_times_are_refused() {
     let folder = Folder::new();
-    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, false));
+    let (a, b) = (folder.recorded("a.csv", 0.0, 1.0, true), folder.recorded("b.csv", 0.5, 1.0, false));
     let recipe = Recipe { lags_s: vec![0.1], ..linear() };
-    let c = folder.file("c.csv", 0.9, 1.0, true);
+    let c = folder.recorded("c.csv", 0.9, 1.0, true);
     let (model, _) = folder.train(&inputs(&[&a], &[&c], &[]), "force", recipe).unwrap();
     let said = predict(std::slice::from_ref(&model), &b, &options(), &folder.path("p.csv"), &Watch::nobody())
         .unwrap_err()
@@ -120,7 +114,7 @@ fn lags_without_times_are_refused() {
 #[test]
 fn an_angle_that_the_gate_rules_has_no_interval() {
     let folder = Folder::new();
-    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
+    let [a, b] = folder.two();
     let models =
         ["force", "posture"].map(|target| folder.train(&inputs(&[&a], &[&b], &[]), target, linear()).unwrap().0);
     predict(&models, &b, &options(), &folder.path("p.csv"), &Watch::nobody()).unwrap();
