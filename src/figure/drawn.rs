@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// A picture that was drawn.
 pub(crate) struct Drawn {
-    _dir: tempfile::TempDir,
+    pub(crate) png: Vec<u8>,
     pub(crate) picture: image::RgbImage,
     pub(crate) svg: String,
 }
@@ -15,5 +15,6 @@ pub(crate) fn drawn(name: &str, draw: impl FnOnce(&Path, &Path)) -> Drawn {
     let folder = std::env::var_os("LUNULA_LOOK").map_or_else(|| dir.path().to_owned(), PathBuf::from);
     let (png, svg) = (folder.join(format!("{name}.png")), folder.join(format!("{name}.svg")));
     draw(&png, &svg);
-    Drawn { picture: image::open(&png).unwrap().to_rgb8(), svg: std::fs::read_to_string(svg).unwrap(), _dir: dir }
+    let (png, svg) = (std::fs::read(png).unwrap(), std::fs::read_to_string(svg).unwrap());
+    Drawn { picture: image::load_from_memory(&png).unwrap().to_rgb8(), png, svg }
 }

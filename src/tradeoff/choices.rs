@@ -176,36 +176,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_reason_and_default_is_in_the_book() {
+    fn each_choice_is_made_once_and_its_reason_and_default_are_in_the_book() {
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         let page = words(include_str!("../../docs/src/accuracy/defaults.md"));
-        for choice in choices() {
-            assert!(
-                page.contains(&words(choice.why)),
-                "the book does not say of {}, {}: {}",
-                choice.job,
-                choice.name,
-                choice.why
-            );
-            assert!(
-                page.contains(&choice.default),
-                "the book does not name the default of {}: {}",
-                choice.name,
-                choice.default
-            );
-        }
-    }
-
-    #[test]
-    fn each_choice_has_its_reason_once() {
         let all = choices();
         for (k, choice) in all.iter().enumerate() {
-            assert!(
-                all[..k].iter().all(|other| (other.job, other.name) != (choice.job, choice.name)),
-                "{}",
-                choice.name
-            );
-            assert!(choice.why.ends_with('.') && !choice.default.is_empty());
+            let of = format!("{}, {}", choice.job, choice.name);
+            assert!(page.contains(&words(choice.why)), "the book does not say of {of}: {}", choice.why);
+            assert!(page.contains(&choice.default), "the book does not name the default of {of}: {}", choice.default);
+            assert!(all[..k].iter().all(|other| (other.job, other.name) != (choice.job, choice.name)), "{of}: twice");
+            assert!(choice.why.ends_with('.') && !choice.default.is_empty(), "{of}");
         }
     }
 }

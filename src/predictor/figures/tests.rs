@@ -1,17 +1,11 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lunula_predictor::{Dataset, Recording};
 use ndarray::{Array2, array};
 
 use super::*;
 use crate::figure::draw_charts;
-
-struct Drawn {
-    _dir: tempfile::TempDir,
-    png: Vec<u8>,
-    picture: image::RgbImage,
-    svg: String,
-}
+use crate::figure::drawn::{self, Drawn};
 
 impl Drawn {
     /// Pixels that are not white.
@@ -29,19 +23,11 @@ impl Drawn {
 const BLUE: [u8; 3] = [0, 114, 178];
 const RED: [u8; 3] = [213, 94, 0];
 
-/// Draws a picture twice, which has to give the same bytes; kept under `LUNULA_LOOK` when that is set.
+/// Draws a picture twice, which has to give the same bytes.
 fn drawn(name: &str, draw: impl Fn(&Path, &Path) -> anyhow::Result<()>) -> Drawn {
-    let dir = tempfile::tempdir().unwrap();
-    let folder = std::env::var_os("LUNULA_LOOK").map_or_else(|| dir.path().to_owned(), PathBuf::from);
-    let bytes = || {
-        let [png, svg] = ["png", "svg"].map(|ending| folder.join(format!("{name}.{ending}")));
-        draw(&png, &svg).unwrap();
-        (std::fs::read(png).unwrap(), std::fs::read_to_string(svg).unwrap())
-    };
-    let (png, svg) = bytes();
-    assert!((&png, &svg) == (&bytes().0, &bytes().1), "{name} is drawn the same each time");
-    let picture = image::load_from_memory(&png).unwrap().to_rgb8();
-    Drawn { _dir: dir, png, picture, svg }
+    let [one, again] = [(); 2].map(|()| drawn::drawn(name, |png, svg| draw(png, svg).unwrap()));
+    assert!(one.png == again.png && one.svg == again.svg, "{name} is drawn the same each time");
+    one
 }
 
 fn names(of: &[&str]) -> Vec<String> {

@@ -150,9 +150,21 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_knee_and_one_setting_is_its_own() {
+    fn nothing_has_no_knee_and_the_others_one_that_pays() {
         assert_eq!(knee(&[]), None);
-        assert_eq!(at(&[exact(1.0, 2.0)]), (0, Why::Flat));
+        assert_eq!(at(&[exact(1.0, 2.0)]), (0, Why::Flat), "one setting is its own");
+        assert_eq!(at(&[exact(1.0, 10.0), exact(2.0, 1.0)]), (1, Why::Steep), "of two the exact one has to pay");
+        assert_eq!(at(&[exact(1.0, 10.0), exact(20.0, 5.0)]), (0, Why::Shallow), "of two the exact one has to pay");
+        assert_eq!(at(&[exact(1.0, 10.0), exact(8.0, 1.0)]).0, 1, "ten times the time for a tenth of the error pays");
+        let slope = |power: f64| [1.0_f64, 2.0, 4.0, 8.0].map(|run_s| exact(run_s, run_s.powf(-power)));
+        assert_eq!(at(&slope(3.0)), (3, Why::Steep), "a straight front");
+        assert_eq!(at(&slope(0.3)), (0, Why::Shallow), "a straight front");
+        let other_way = [exact(1.0, 10.0), exact(4.0, 9.0), exact(5.0, 1.0)];
+        assert_eq!(at(&other_way), (2, Why::Steep), "one that bends the other way");
+        let constant = [exact(3.0, 1.0), exact(1.0, 1.0), exact(2.0, 1.0)];
+        assert_eq!(at(&constant), (1, Why::Flat), "where the error does not fall the cheapest is the knee");
+        let rises = [exact(1.0, 1.04), exact(2.0, 1.0), exact(9.0, 5.0)];
+        assert_eq!(at(&rises), (0, Why::Flat), "within what counts as the same, and where it rises");
     }
 
     #[test]
@@ -161,30 +173,6 @@ mod tests {
         let (at, why) = at(&costs);
         assert_eq!(at, 1);
         assert!(matches!(why, Why::Bend(depth) if depth > 0.8), "{why:?}");
-    }
-
-    #[test]
-    fn of_two_the_exact_one_has_to_pay() {
-        assert_eq!(at(&[exact(1.0, 10.0), exact(2.0, 1.0)]), (1, Why::Steep));
-        assert_eq!(at(&[exact(1.0, 10.0), exact(20.0, 5.0)]), (0, Why::Shallow));
-        // Ten times the time for a tenth of the error pays.
-        assert_eq!(at(&[exact(1.0, 10.0), exact(8.0, 1.0)]).0, 1);
-    }
-
-    #[test]
-    fn a_straight_front_has_no_bend() {
-        let slope = |power: f64| [1.0_f64, 2.0, 4.0, 8.0].map(|run_s| exact(run_s, run_s.powf(-power)));
-        assert_eq!(at(&slope(3.0)), (3, Why::Steep));
-        assert_eq!(at(&slope(0.3)), (0, Why::Shallow));
-        // Nor has one that bends the other way.
-        assert_eq!(at(&[exact(1.0, 10.0), exact(4.0, 9.0), exact(5.0, 1.0)]), (2, Why::Steep));
-    }
-
-    #[test]
-    fn where_the_error_does_not_fall_the_cheapest_is_the_knee() {
-        assert_eq!(at(&[exact(3.0, 1.0), exact(1.0, 1.0), exact(2.0, 1.0)]), (1, Why::Flat));
-        // Within what counts as the same, and where it rises.
-        assert_eq!(at(&[exact(1.0, 1.04), exact(2.0, 1.0), exact(9.0, 5.0)]), (0, Why::Flat));
     }
 
     #[test]

@@ -199,16 +199,16 @@ pub(super) mod tests {
         judge("photos", Measured { rows, ..Measured::default() }, ("seed 1", &others), Instant::now())
     }
 
-    /// A row of another program, as those of a table are.
-    pub(in crate::tradeoff) fn peer(setting: &str, run_s: f64, error: f64) -> Row {
-        Row { peer: true, ..row(setting, run_s, error) }
+    /// Settings `a` and `b`, of which `b` is the knee, the default beyond it, and another program where it is named.
+    pub(in crate::tradeoff) fn judged_by_default(other: Option<&str>) -> Tradeoff {
+        let mut rows = vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&photos::detection_default(), 30.0, 0.4)];
+        rows.extend(other.map(|other| Row { peer: true, ..row(other, 0.1, 0.1) }));
+        judged(rows, &[]).unwrap()
     }
 
     #[test]
     fn knee_and_default_are_marked_and_reported() {
-        let default = photos::detection_default();
-        let rows = vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), peer("other", 0.1, 0.1)];
-        let found = judged(rows, &[]).unwrap();
+        let found = judged_by_default(Some("other"));
         let marks: Vec<_> = found.rows.iter().map(|row| (row.knee, row.default, row.peer)).collect();
         assert_eq!(marks, [(false, false, false), (true, false, false), (false, true, false), (false, false, true)]);
         let curve = &found.curves[0];

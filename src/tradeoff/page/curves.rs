@@ -68,15 +68,11 @@ pub(in crate::tradeoff) fn marks(rows: &[&Row]) -> Vec<Mark> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tradeoff::judge::tests::{judged, peer, row};
-    use crate::tradeoff::photos;
+    use crate::tradeoff::judge::tests::judged_by_default;
 
     #[test]
     fn knee_default_and_peers_are_drawn() {
-        let default = photos::detection_default();
-        let rows =
-            vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), peer("Other, fast", 0.1, 0.1)];
-        let panels = panels(&judged(rows, &[]).unwrap());
+        let panels = panels(&judged_by_default(Some("Other, fast")));
         let [Item::Path(_), Item::Points { hollow: false, name: own, .. }, others, marks @ ..] = &panels[0].items[..]
         else {
             panic!("{:?}", panels[0].items)

@@ -205,7 +205,7 @@ fn time(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tradeoff::judge::tests::{judged, row};
+    use crate::tradeoff::judge::tests::judged_by_default;
     use crate::tradeoff::peers::PeerReport;
 
     #[test]
@@ -216,8 +216,7 @@ mod tests {
 
     #[test]
     fn the_page_has_every_job_its_knees_and_what_is_missing() {
-        let default = crate::tradeoff::photos::detection_default();
-        let mut job = judged(vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4)], &[]).unwrap();
+        let mut job = judged_by_default(None);
         job.peers.push(PeerReport { peer: "Other".into(), measured: false, what: "of another scene".into() });
         job.refused.push("c: no answer".into());
         let folder = tempfile::tempdir().unwrap();

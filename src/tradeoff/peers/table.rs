@@ -158,6 +158,7 @@ const WANTED: &str = "is empty or not positive; write what was measured";
 pub(in crate::tradeoff) mod tests {
     use super::*;
     use crate::tradeoff::photos::OUTLINE_ERROR;
+    use crate::trial::Folder;
 
     pub(in crate::tradeoff) fn other(setting: &str, error: f64, run_s: f64) -> PeerRow {
         PeerRow {
@@ -179,17 +180,13 @@ pub(in crate::tradeoff) mod tests {
     }
 
     fn text(rows: &[PeerRow]) -> String {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("peers.csv");
-        write_peers(rows, &path).unwrap();
-        std::fs::read_to_string(path).unwrap()
+        let folder = Folder::new();
+        write_peers(rows, &folder.path("peers.csv")).unwrap();
+        std::fs::read_to_string(folder.path("peers.csv")).unwrap()
     }
 
     fn read(text: &str) -> anyhow::Result<Vec<PeerRow>> {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("peers.csv");
-        std::fs::write(&path, text).unwrap();
-        read_peers(&path)
+        read_peers(&Folder::new().file("peers.csv", text))
     }
 
     #[test]
