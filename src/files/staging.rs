@@ -495,8 +495,7 @@ mod tests {
     #[test]
     fn results_appear_at_the_commit_and_replace_only_their_own() {
         let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("mine.txt"), "mine").unwrap();
-        fs::write(dir.path().join("old.txt"), "old").unwrap();
+        put(dir.path(), &[("mine.txt", "mine"), ("old.txt", "old")]);
         let staging = Staging::new(dir.path()).unwrap();
         staging.write("old.txt", b"new").unwrap();
         staging.write("deep/er.txt", b"deep").unwrap();
@@ -583,11 +582,15 @@ mod tests {
         staging.commit_with(others)
     }
 
-    fn stood(root: &Path) {
-        for (name, text) in [("out/a.csv", "old"), ("out/c.csv", "old"), ("out/mine", "mine"), ("bids/y.tsv", "old")] {
+    fn put(root: &Path, files: &[(&str, &str)]) {
+        for (name, text) in files {
             fs::create_dir_all(root.join(name).parent().unwrap()).unwrap();
             fs::write(root.join(name), text).unwrap();
         }
+    }
+
+    fn stood(root: &Path) {
+        put(root, &[("out/a.csv", "old"), ("out/c.csv", "old"), ("out/mine", "mine"), ("bids/y.tsv", "old")]);
     }
 
     #[test]
@@ -650,13 +653,9 @@ mod tests {
         let writing = hidden::file_within(dir.path()).unwrap();
         // As a kill leaves them: there, and nobody's.
         let killed = dir.path().join(".lunula-killed");
-        fs::create_dir_all(killed.join(BEFORE)).unwrap();
-        fs::write(killed.join(".lock"), "").unwrap();
-        fs::write(killed.join("half.csv"), "half").unwrap();
+        put(&killed, &[(".lock", ""), ("half.csv", "half")]);
         for (k, name, stands) in [("0", "taken", false), ("1", "replaced", true)] {
-            fs::create_dir(killed.join(BEFORE).join(k)).unwrap();
-            fs::write(killed.join(BEFORE).join(k).join("old"), name).unwrap();
-            fs::write(killed.join(BEFORE).join(format!("{k}{PLACE}")), name).unwrap();
+            put(&killed.join(BEFORE), &[(&format!("{k}/old"), name), (&format!("{k}{PLACE}"), name)]);
             if stands {
                 fs::create_dir(dir.path().join(name)).unwrap();
             }
@@ -678,16 +677,10 @@ mod tests {
     fn folders_take_the_places_of_folders_and_what_is_no_longer_made_goes() {
         for after in 0.. {
             let dir = tempfile::tempdir().unwrap();
-            for (name, text) in [("photos/a", "old"), ("truth/b", "old"), ("clock", "old")] {
-                fs::create_dir_all(dir.path().join(name).parent().unwrap()).unwrap();
-                fs::write(dir.path().join(name), text).unwrap();
-            }
+            put(dir.path(), &[("photos/a", "old"), ("truth/b", "old"), ("clock", "old")]);
             let before = all_in(dir.path());
             let staging = Staging::new(dir.path()).unwrap();
-            for (name, text) in [("photos/n", "new"), ("truth/b", "new")] {
-                fs::create_dir_all(staging.path().join(name).parent().unwrap()).unwrap();
-                fs::write(staging.path().join(name), text).unwrap();
-            }
+            put(staging.path(), &[("photos/n", "new"), ("truth/b", "new")]);
             faults::fail(after, 1);
             let committed = staging.commit_exactly(&["truth", "photos", "clock"]);
             if !faults::end() {

@@ -3,6 +3,7 @@ use std::fs;
 use proptest::prelude::*;
 
 use super::*;
+use crate::trial::Folder;
 
 const FORMATS: [&str; 2] = ["csv", "parquet"];
 
@@ -16,17 +17,20 @@ fn columns() -> Vec<Column> {
     ]
 }
 
-/// A folder and the table of `rows` in it.
-fn written(extension: &str, rows: &[[Value<'_>; 5]]) -> (tempfile::TempDir, PathBuf) {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("t").with_extension(extension);
-    let facts = [("angles".to_owned(), "positive in flexion".to_owned())];
-    let mut table = TableWriter::create(&path, &path, columns(), &facts).unwrap();
-    for row in rows {
-        table.write(row).unwrap();
-    }
+/// A new table, filled by `fill`.
+fn fill(path: &Path, columns: Vec<Column>, facts: &[(String, String)], fill: impl FnOnce(&mut TableWriter)) {
+    let mut table = TableWriter::create(path, path, columns, facts).unwrap();
+    fill(&mut table);
     table.finish().unwrap();
-    (dir, path)
+}
+
+/// A folder and the table of `rows` in it.
+fn written(extension: &str, rows: &[[Value<'_>; 5]]) -> (Folder, PathBuf) {
+    let folder = Folder::new();
+    let path = folder.path("t").with_extension(extension);
+    let facts = [("angles".to_owned(), "positive in flexion".to_owned())];
+    fill(&path, columns(), &facts, |table| rows.iter().for_each(|row| table.write(row).unwrap()));
+    (folder, path)
 }
 
 const ROWS: [[Value<'static>; 5]; 4] = [
@@ -83,15 +87,15 @@ fn a_table_may_have_no_rows() {
 #[test]
 fn long_tables_span_row_groups() {
     let rows = 2 * 65_536 + 3;
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("long.parquet");
+    let folder = Folder::new();
+    let path = folder.path("long.parquet");
     let columns = vec![Column::integer("frame"), Column::rounded("x", 3), Column::text("status")];
-    let mut table = TableWriter::create(&path, &path, columns, &[]).unwrap();
-    for k in 0..rows {
-        let x = if k % 3 == 0 { Value::Missing } else { Value::Number(k as f64 / 7.0) };
-        table.write(&[Value::Integer(k), x, Value::Text(if k % 5 == 0 { "lost: a" } else { "ok" })]).unwrap();
-    }
-    table.finish().unwrap();
+    fill(&path, columns, &[], |table| {
+        for k in 0..rows {
+            let x = if k % 3 == 0 { Value::Missing } else { Value::Number(k as f64 / 7.0) };
+            table.write(&[Value::Integer(k), x, Value::Text(if k % 5 == 0 { "lost: a" } else { "ok" })]).unwrap();
+        }
+    });
     let table = Table::read(&path).unwrap();
     assert_eq!(table.integers("frame").unwrap(), (0..rows).map(Some).collect::<Vec<_>>());
     let x = table.numbers("x").unwrap();
@@ -128,10 +132,7 @@ fn wrong_rows_and_columns_are_refused() {
 }
 
 fn read_text(text: &[u8]) -> Result<Table, TableError> {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("log.csv");
-    fs::write(&path, text).unwrap();
-    Table::read(&path)
+    Table::read(&Folder::new().file("log.csv", text))
 }
 
 #[test]
@@ -173,10 +174,8 @@ fn other_delimiters_decimal_commas_and_line_ends_are_read() {
                 assert_eq!(read.numbers("time_s").unwrap(), plain.numbers("time_s").unwrap(), "{text:?}");
                 assert_eq!(read.numbers("P1").unwrap(), [Some(-0.001), None], "{text:?}");
                 assert_eq!(texts(&read), texts(&plain), "{text:?}");
-                let dir = tempfile::tempdir().unwrap();
-                let path = dir.path().join("t.csv");
-                fs::write(&path, &text).unwrap();
-                assert_eq!(column_names(&path).unwrap(), plain.names(), "{text:?}");
+                let names = column_names(&Folder::new().file("t.csv", &text)).unwrap();
+                assert_eq!(names, plain.names(), "{text:?}");
             }
         }
     }
@@ -205,10 +204,6 @@ fn damaged_files_are_refused() {
         assert!(message.contains(words) && message.contains("log.csv"), "{message}");
     }
     assert!(Table::read(Path::new("nothing.csv")).unwrap_err().to_string().contains("nothing.csv"));
-    let (_dir, path) = written("parquet", &ROWS);
-    let whole = fs::read(&path).unwrap();
-    fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-    assert!(Table::read(&path).unwrap_err().to_string().contains("not a whole Parquet file"));
 }
 
 proptest! {
@@ -285,12 +280,10 @@ fn many_rows_at_once_are_the_same_as_row_by_row() {
             write(&[Value::Integer(k as i64), x, Value::Number(-1e-5 * k as f64), Value::Text(&words)]);
         };
         let [one, many] = ["one", "many"].map(|name| dir.path().join(name).with_extension(extension));
-        let mut table = TableWriter::create(&one, &one, columns(), &[]).unwrap();
-        (0..rows).for_each(|k| make(k, &mut |cells| table.write(cells).unwrap()));
-        table.finish().unwrap();
-        let mut table = TableWriter::create(&many, &many, columns(), &[]).unwrap();
-        table.write_rows(rows, &make).unwrap();
-        table.finish().unwrap();
+        fill(&one, columns(), &[], |table| {
+            (0..rows).for_each(|k| make(k, &mut |cells| table.write(cells).unwrap()));
+        });
+        fill(&many, columns(), &[], |table| table.write_rows(rows, &make).unwrap());
         assert!(std::fs::read(one).unwrap() == std::fs::read(&many).unwrap(), "{extension}");
         assert_eq!(Table::read(&many).unwrap().rows(), rows);
         let mut table = TableWriter::create(&many, &many, columns(), &[]).unwrap();

@@ -15,15 +15,7 @@ fn page(url: &str, arguments: &[&str]) -> String {
     let profile = tempfile::tempdir().unwrap();
     // A page that never comes to rest is given up.
     let output = Command::new("timeout")
-        .args([
-            "100",
-            "chromium",
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--virtual-time-budget=8000",
-            "--dump-dom",
-        ])
+        .args("100 chromium --headless --no-sandbox --disable-gpu --virtual-time-budget=8000 --dump-dom".split(' '))
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(arguments)
         .arg(url)

@@ -134,13 +134,7 @@ impl Looking {
     fn at(url: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let child = Command::new("chromium")
-            .args([
-                "--headless",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--remote-debugging-port=0",
-                "--window-size=1200,800",
-            ])
+            .args("--headless --no-sandbox --disable-gpu --remote-debugging-port=0 --window-size=1200,800".split(' '))
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .arg(url)
             .stdout(Stdio::null())

@@ -12,8 +12,8 @@ use lunula_ui::{Latest, Server, Settings, UiError, live, results};
 use util::{Answer, Asks, run, serve};
 
 fn one_run(dir: &Path) {
-    std::fs::create_dir(dir.join("<img src=x onerror=alert(1)>")).unwrap();
     let at = dir.join("<img src=x onerror=alert(1)>");
+    std::fs::create_dir(&at).unwrap();
     std::fs::write(at.join("run.json"), "{\"job\":\"photos\",\"version\":\"0.1.0\",\"warnings\":[]}").unwrap();
     std::fs::write(at.join("report.html"), "<script>alert(1)</script>").unwrap();
 }

@@ -165,8 +165,7 @@ mod tests {
     #[test]
     fn what_goes_astray_says_what_it_looks_like() {
         let force: Array1<f64> = (0..300).map(|k| -3.0 + 2.0 * (0.1 * f64::from(k)).sin()).collect();
-        let said =
-            |of: &dyn Fn(f64) -> f64| astray(force.view(), force.mapv(of).view(), None).unwrap_or_default();
+        let said = |of: &dyn Fn(f64) -> f64| astray(force.view(), force.mapv(of).view(), None).unwrap_or_default();
         // A model that learnt little of it: the force itself is as in training.
         let shrunk = force.mapv(|force| -2.8 + 0.1 * force);
         let alike = astray(force.view(), shrunk.view(), Some(4.2)).unwrap_or_default();

@@ -72,15 +72,6 @@ fn the_same_seed_gives_the_same_bytes_and_another_does_not() {
 }
 
 #[test]
-fn a_dead_photodiode_holds_a_simulated_session_up_and_is_named() {
-    let dir = tempfile::tempdir().unwrap();
-    let report = run(dir.path(), "phantom:subject?dead=P3&rate=max", SHORT).unwrap();
-    assert!(!report.completed && report.rows == 0);
-    assert!(report.failed.iter().any(|what| what.contains("P3 is 0 V all the time")), "{:?}", report.failed);
-    assert!(!dir.path().join("r.csv").exists());
-}
-
-#[test]
 fn what_can_not_be_prompted_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let refused = |source: &str| run(dir.path(), source, SHORT).map(|_| ()).unwrap_err().to_string();

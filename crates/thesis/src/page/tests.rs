@@ -27,14 +27,10 @@ fn part(at: &Path, part: Part, subject: &str, files: &[(&str, &[u8])]) -> PartFo
     PartFolder { part, folder, subject: subject.to_owned() }
 }
 
-fn png() -> Vec<u8> {
-    lunula::figure::png(&image::DynamicImage::new_luma8(2, 2)).unwrap()
-}
-
 #[test]
 fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
     let folder = tempfile::tempdir().unwrap();
-    let (at, png) = (folder.path(), png());
+    let (at, png) = (folder.path(), lunula::figure::png(&image::DynamicImage::new_luma8(2, 2)).unwrap());
     let numbers = br#"{"P7.phase_deg": 10.0, "P5.phase_deg": 10.0}"#;
     let parts = [
         part(at, Part::Lateral, "S02", &[("numbers.json", b"{}")]),

@@ -152,6 +152,13 @@ mod tests {
         (0..rows).map(|k| k as f64 / 12.5).collect()
     }
 
+    /// Cycles and legs of a drive.
+    fn counts(rows: usize, drive: impl Fn((usize, &f64)) -> f64) -> (usize, usize) {
+        let time_s = times(rows);
+        let found = Cycles::of(&time_s, &time_s.iter().enumerate().map(drive).collect::<Vec<_>>());
+        (found.count(), found.legs.len())
+    }
+
     /// Small disorder, the same each time.
     fn shake(k: usize) -> f64 {
         (k as f64 * 12.9898).sin() * 43758.547 % 1.0
@@ -170,15 +177,9 @@ mod tests {
 
     #[test]
     fn rests_before_and_after_and_drift_make_no_cycles() {
-        let time_s = times(1500);
-        let drive: Vec<f64> = time_s
-            .iter()
-            .map(|&t| {
-                let bent = if (20.0..80.0).contains(&t) { 40.0 - 50.0 * (TAU * 0.1 * (t - 20.0)).cos() } else { -10.0 };
-                bent + 0.05 * t
-            })
-            .collect();
-        assert_eq!(Cycles::of(&time_s, &drive).count(), 6);
+        let rests =
+            |t: f64| if (20.0..80.0).contains(&t) { 40.0 - 50.0 * (TAU * 0.1 * (t - 20.0)).cos() } else { -10.0 };
+        assert_eq!(counts(1500, |(_, &t)| rests(t) + 0.05 * t).0, 6);
     }
 
     #[test]
@@ -193,20 +194,13 @@ mod tests {
 
     #[test]
     fn a_sine_of_five_cycles_has_five_though_only_nine_ways_are_whole() {
-        let time_s = times(1251);
-        let drive: Vec<f64> =
-            time_s.iter().enumerate().map(|(k, t)| 2.0 * (TAU * 0.05 * t).sin() + 0.05 * shake(k)).collect();
-        let found = Cycles::of(&time_s, &drive);
-        assert_eq!((found.count(), found.legs.len()), (5, 9));
+        assert_eq!(counts(1251, |(k, t)| 2.0 * (TAU * 0.05 * t).sin() + 0.05 * shake(k)), (5, 9));
     }
 
     #[test]
     fn one_cycle_and_a_half_one_are_distinguished() {
-        let time_s = times(400);
-        let drive: Vec<f64> =
-            time_s.iter().map(|&t| if t < 20.0 { (TAU * 0.05 * t).cos() } else { 1.0 - 0.03 * (t - 20.0) }).collect();
-        let found = Cycles::of(&time_s, &drive);
-        assert_eq!((found.count(), found.legs.len()), (1, 2));
+        let once = |t: f64| if t < 20.0 { (TAU * 0.05 * t).cos() } else { 1.0 - 0.03 * (t - 20.0) };
+        assert_eq!(counts(400, |(_, &t)| once(t)), (1, 2));
     }
 
     #[test]
