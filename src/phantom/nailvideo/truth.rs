@@ -140,42 +140,49 @@ mod tests {
         }
     }
 
+    /// What hides some photodiodes in frame 30 and none in frames 5 and 62: of each photodiode in frame 30 the share that
+    /// is hidden, and its luma with that and without.
+    fn hidden(scene: &Scene, options: NailVideoOptions) -> Vec<[f64; 3]> {
+        let bare = Scene::new(NailVideoOptions { rod: Vec::new(), finger: Vec::new(), ..options }).unwrap();
+        for frame in [5, 62] {
+            assert!(scene.truth(frame).hidden.iter().all(|hidden| *hidden == 0.0), "frame {frame}");
+        }
+        let (truth, pictures) = (scene.truth(30), [scene, &bare].map(|scene| scene.picture(30)));
+        let of = |(photodiode, hidden): (usize, &f64)| {
+            let [with, without] =
+                pictures.each_ref().map(|picture| luma(scene, picture, truth.motion.unwrap(), photodiode));
+            [*hidden, with, without]
+        };
+        truth.hidden.iter().enumerate().map(of).collect()
+    }
+
     #[test]
     fn a_rod_hides_what_it_covers_and_a_hand_that_leaves_is_gone() {
         let options = NailVideoOptions { rod: vec![[20, 30]], leave: Some([90, 10]), ..small(NailProtocol::Rest) };
         let scene = Scene::new(options.clone()).unwrap();
-        let bare = Scene::new(NailVideoOptions { rod: Vec::new(), ..options }).unwrap();
-        let hidden = |frame: usize| scene.truth(frame).hidden;
-        assert!(hidden(5).iter().chain(&hidden(62)).all(|hidden| *hidden == 0.0));
-        let covered = hidden(30);
-        assert!(covered.iter().any(|hidden| *hidden >= 0.9) && covered.contains(&0.0));
-        let pictures = (scene.picture(30), bare.picture(30));
-        let motion = scene.truth(30).motion.unwrap();
-        for (photodiode, hidden) in covered.iter().enumerate() {
-            let [with, without] = [&pictures.0, &pictures.1].map(|picture| luma(&scene, picture, motion, photodiode));
+        let covered = hidden(&scene, options);
+        assert!(covered.iter().any(|one| one[0] >= 0.9) && covered.iter().any(|one| one[0] == 0.0), "{covered:?}");
+        for one @ [hidden, with, without] in covered {
             // The rod is 40 levels and more darker; its border is soft over a pixel.
-            assert!(if *hidden == 0.0 { with >= without - 3.0 } else { with < without - 30.0 * (hidden - 0.1) });
+            let is_right = if hidden == 0.0 { with >= without - 3.0 } else { with < without - 30.0 * (hidden - 0.1) };
+            assert!(is_right, "{one:?}");
         }
-        assert!((90..100).all(|frame| scene.truth(frame).gone && hidden(frame).iter().all(|hidden| *hidden == 1.0)));
+        assert!(
+            (90..100)
+                .all(|frame| scene.truth(frame).gone && scene.truth(frame).hidden.iter().all(|hidden| *hidden == 1.0))
+        );
         assert!(!scene.truth(70).gone && !scene.truth(119).gone);
     }
 
     #[test]
     fn a_finger_hides_what_it_covers_in_the_same_skin() {
         let options = NailVideoOptions { finger: vec![[20, 30]], ..small(NailProtocol::Rest) };
-        let scene = Scene::new(options.clone()).unwrap();
-        let bare = Scene::new(NailVideoOptions { finger: Vec::new(), ..options }).unwrap();
-        let hidden = |frame: usize| scene.truth(frame).hidden;
-        assert!(hidden(5).iter().chain(&hidden(62)).all(|hidden| *hidden == 0.0));
-        let covered = hidden(30);
-        assert!(covered.contains(&1.0) && covered.contains(&0.0), "{covered:?}");
-        let pictures = (scene.picture(30), bare.picture(30));
-        let motion = scene.truth(30).motion.unwrap();
-        for (photodiode, hidden) in covered.iter().enumerate() {
-            let [with, without] = [&pictures.0, &pictures.1].map(|picture| luma(&scene, picture, motion, photodiode));
+        let covered = hidden(&Scene::new(options.clone()).unwrap(), options);
+        assert!([1.0, 0.0].iter().all(|share| covered.iter().any(|one| one[0] == *share)), "{covered:?}");
+        for one @ [hidden, with, without] in covered {
             // It is another's colour, however near.
             let is_other = (with - without).abs() > 0.2;
-            assert!(if *hidden == 0.0 { !is_other } else { *hidden < 1.0 || is_other }, "P{}", photodiode + 1);
+            assert!(if hidden == 0.0 { !is_other } else { hidden < 1.0 || is_other }, "{one:?}");
         }
     }
 

@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_day_ends_at_midnight_and_a_timer_counts_on() {
-        let late = |format: &str| Clock { format: format.to_owned(), offset_s: 86_390.0, ..Clock::default() };
+        let late = |format: &str| Clock { offset_s: 86_390.0, ..clock(format) };
         assert_eq!(late("hh:mm:ss.t").shown(9.95).0, "23:59:59.9");
         assert_eq!(late("hh:mm:ss.t").shown(10.0).0, "00:00:00.0");
         assert_eq!(late("h:mm:ss").shown(10.0).0, "0:00:00");
@@ -229,9 +229,7 @@ mod tests {
 
     #[test]
     fn twelve_hours_go_over_noon_and_midnight() {
-        let at = |format: &str, offset_s: f64| {
-            Clock { format: format.to_owned(), offset_s, ..Clock::default() }.shown(0.0).0
-        };
+        let at = |format: &str, offset_s: f64| Clock { offset_s, ..clock(format) }.shown(0.0).0;
         assert_eq!(at("hh:mm:ss a", 43_199.0), "11:59:59 AM");
         assert_eq!(at("hh:mm:ss a", 43_200.0), "12:00:00 PM");
         assert_eq!(at("hh:mm:ss a", 46_800.0), "01:00:00 PM");

@@ -6,9 +6,11 @@ use crate::phantom::finger::MarkerLayout;
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{Colours, Scene, VideoOptions};
 use crate::posture::layout::Layout;
-use crate::posture::stage::{PINK, SKIN, Stage, WALL};
+use crate::posture::stage::{PAINT, PINK, SKIN, Stage, WALL};
 use crate::posture::survey::Surveyor;
 use crate::posture::track::scenes;
+
+const NAIL: [u8; 3] = [0xc9, 0x83, 0x78];
 
 /// A start is this near to its marker; measured up to 1 px.
 const START_TOLERANCE_PX: f64 = 2.0;
@@ -58,20 +60,14 @@ fn the_file_names_the_markers_of_a_finger_and_runs() {
 fn nothing_that_looks_like_a_marker_is_said() {
     let mut stage = Stage::new(320, 200, WALL);
     stage.disc([160.0, 100.0], 90.0, SKIN);
-    let info = stage.info();
-    let mut suggester = Suggester::new(&info);
-    suggester.look(&stage.picture(1).frame(0, 0.0));
-    assert_eq!(suggester.finish(), Err(SuggestError::Nothing { frames: 1 }));
+    assert_eq!(suggested(&[stage]), Err(SuggestError::Nothing { frames: 1 }));
 }
 
 #[test]
 fn one_marker_is_a_file_without_segments() {
     let mut stage = Stage::new(320, 200, WALL);
     stage.disc([160.0, 100.0], 12.0, PINK);
-    let info = stage.info();
-    let mut suggester = Suggester::new(&info);
-    suggester.look(&stage.picture(1).frame(0, 0.0));
-    let text = suggester.finish().unwrap();
+    let text = suggested(&[stage]).unwrap();
     let layout = Layout::parse(&text, Path::new("m.toml")).unwrap();
     assert_eq!(layout.markers.len(), 1);
     assert!(layout.segments.is_empty());
@@ -96,7 +92,6 @@ fn places(k: usize) -> [[f64; 2]; 4] {
 
 #[test]
 fn skin_is_no_marker() {
-    let nail = [0xc9, 0x83, 0x78];
     let with = |ground: [u8; 3], colour: [u8; 3]| -> Vec<Stage> {
         let stage = |k: usize| {
             let mut stage = Stage::new(320, 200, ground);
@@ -108,7 +103,7 @@ fn skin_is_no_marker() {
         (0..6).map(stage).collect()
     };
     // Fingertips before a wall, and nails on a hand.
-    for (ground, colour) in [(WALL, SKIN), (SKIN, nail)] {
+    for (ground, colour) in [(WALL, SKIN), (SKIN, NAIL)] {
         assert_eq!(suggested(&with(ground, colour)), Err(SuggestError::Nothing { frames: 6 }));
     }
     assert!(suggested(&with(WALL, PINK)).is_ok(), "stickers that move are markers wherever they are");
@@ -116,14 +111,13 @@ fn skin_is_no_marker() {
 
 #[test]
 fn dots_of_one_dark_paint_get_their_places() {
-    let paint = [0x2b, 0x4b, 0x10];
     let stage = |k: usize| {
         let mut stage = Stage::new(320, 200, SKIN);
         // Sizes of dots differ, and a nail lies between them.
         for (at, radius) in places(k).into_iter().zip([7.0, 9.0, 5.5, 6.0]) {
-            stage.disc(at, radius, paint);
+            stage.disc(at, radius, PAINT);
         }
-        stage.disc([100.0, 140.0], 8.0, [0xc9, 0x83, 0x78]);
+        stage.disc([100.0, 140.0], 8.0, NAIL);
         stage
     };
     let stages: Vec<Stage> = (0..6).map(stage).collect();

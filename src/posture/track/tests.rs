@@ -3,7 +3,7 @@ use std::path::Path;
 use super::scenes::{Film, Tally, discs};
 use super::*;
 use crate::posture::layout::Marker;
-use crate::posture::stage::{BLACK, BLUE, Disc, GREEN, PINK, RED, SKIN, Stage, WALL};
+use crate::posture::stage::{BLACK, BLUE, Disc, GREEN, PAINT, PINK, RED, SKIN, Stage, WALL};
 use crate::posture::survey::{SurveyError, Surveyor};
 use crate::video::{Format, Picture};
 
@@ -140,8 +140,6 @@ fn starts(layout: &Layout, places: &[[f64; 2]], off: f64) -> String {
     };
     format!("[start]\n{}", layout.markers.iter().zip(places).enumerate().map(line).collect::<String>())
 }
-
-const PAINT: [u8; 3] = [0x2b, 0x4b, 0x10];
 
 #[test]
 fn thumb_and_index_of_one_colour_keep_the_names_of_their_starts() {

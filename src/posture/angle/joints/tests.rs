@@ -23,20 +23,20 @@ fn layout(text: &str) -> Layout {
     Layout::parse(&text.replace("MARKERS", &format!("[markers]\n{markers}")), Path::new("m.toml")).unwrap()
 }
 
-/// J1, J2, J3 of four segments with markers of their own.
-fn pairs() -> Layout {
-    layout(
-        "flexion = 'clockwise'\nMARKERS[segments]\nm = ['a','b']\np = ['c','d']\ni = ['e','f']\nt = ['g','h']\n\
-         [joints]\nJ1 = ['m','p']\nJ2 = ['p','i']\nJ3 = ['i','t']",
-    )
+/// J1, J2, J3 of four segments.
+fn three(segments: &str) -> Layout {
+    let joints = "[joints]\nJ1 = ['m','p']\nJ2 = ['p','i']\nJ3 = ['i','t']";
+    layout(&format!("flexion = 'clockwise'\nMARKERS[segments]\n{segments}\n{joints}"))
 }
 
-/// J1, J2, J3 of four segments that share the marks on the joints.
+/// With markers of their own.
+fn pairs() -> Layout {
+    three("m = ['a','b']\np = ['c','d']\ni = ['e','f']\nt = ['g','h']")
+}
+
+/// That share the marks on the joints.
 fn shared() -> Layout {
-    layout(
-        "flexion = 'clockwise'\nMARKERS[segments]\nm = ['a','b']\np = ['b','c']\ni = ['c','d']\nt = ['d','e']\n\
-         [joints]\nJ1 = ['m','p']\nJ2 = ['p','i']\nJ3 = ['i','t']",
-    )
+    three("m = ['a','b']\np = ['b','c']\ni = ['c','d']\nt = ['d','e']")
 }
 
 const LENGTHS_PX: [f64; 4] = [100.0, 122.0, 87.0, 61.0];
@@ -64,10 +64,15 @@ fn seen_with(at_px: [f64; 2], covariance_px2: [f64; 3]) -> Sight {
     Sight::Seen(Centre { at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: 10.0 })
 }
 
-fn seen(points: &[[f64; 2]]) -> Vec<Sight> {
-    let mut sights: Vec<Sight> = points.iter().map(|&p| seen_with(p, [1e-4, 0.0, 1e-4])).collect();
+/// The first of eight markers, each with its covariance; the others are lost.
+fn all_with(points: &[[f64; 2]], covariance: impl Fn(usize) -> [f64; 3]) -> Vec<Sight> {
+    let mut sights: Vec<Sight> = points.iter().enumerate().map(|(k, &p)| seen_with(p, covariance(k))).collect();
     sights.resize(8, Sight::Lost(Loss::NotFound));
     sights
+}
+
+fn seen(points: &[[f64; 2]]) -> Vec<Sight> {
+    all_with(points, |_| [1e-4, 0.0, 1e-4])
 }
 
 fn degrees(row: &AngleRow) -> Vec<f64> {
@@ -86,9 +91,8 @@ fn bent_fingers_have_their_angles_in_any_direction() {
     for base in [-170.0, -90.0, -10.0, 0.0, 45.0, 90.0, 180.0] {
         let expected = [20.0, 75.5, -3.25];
         let joints = finger(base, expected);
-        let info = UPRIGHT;
-        assert_degrees(&angles_of(&pairs(), info).step(&seen(&two_each(joints))), &expected);
-        assert_degrees(&angles_of(&shared(), info).step(&seen(&joints)), &expected);
+        assert_degrees(&angles_of(&pairs(), UPRIGHT).step(&seen(&two_each(joints))), &expected);
+        assert_degrees(&angles_of(&shared(), UPRIGHT).step(&seen(&joints)), &expected);
     }
 }
 
@@ -147,12 +151,8 @@ fn a_marker_beyond_the_lens_is_lost() {
 fn angles_do_not_jump_and_a_fold_may_pass_180_degrees_in_sum() {
     let layout = shared();
     let mut angles = angles_of(&layout, UPRIGHT);
-    for k in 0..=100 {
+    for k in (0..=100).chain((0..=100).rev()) {
         // In sum 300 degrees; J2 alone passes 180.
-        let expected = [0.7 * f64::from(k), 1.9 * f64::from(k), 0.4 * f64::from(k)];
-        assert_degrees(&angles.step(&seen(&finger(30.0, expected))), &expected);
-    }
-    for k in (0..=100).rev() {
         let expected = [0.7 * f64::from(k), 1.9 * f64::from(k), 0.4 * f64::from(k)];
         assert_degrees(&angles.step(&seen(&finger(30.0, expected))), &expected);
     }
@@ -177,43 +177,39 @@ fn the_first_angle_is_within_half_a_turn_and_a_gap_keeps_the_branch() {
 #[test]
 fn only_needed_markers_are_spoken_of() {
     let all = pairs();
-    let layout = all.wanting(&["J2".into()]).unwrap();
+    let of_j2 = all.wanting(&["J2".into()]).unwrap();
     let points = two_each(finger(0.0, [10.0, 20.0, 30.0]));
     let mut sights = seen(&points);
     sights[0] = Sight::Lost(Loss::NotFound);
     sights[7] = Sight::Lost(Loss::Hidden);
-    let row = angles_of(&layout, UPRIGHT).step(&sights);
-    assert_eq!(row.status(&layout), "ok");
+    let row = angles_of(&of_j2, UPRIGHT).step(&sights);
+    assert_eq!(row.status(&of_j2), "ok");
     assert_degrees(&row, &[20.0]);
     let row = angles_of(&all, UPRIGHT).step(&vec![Sight::Lost(Loss::Undecoded); 8]);
     assert_eq!(row.status(&all), "lost: a b c d e f g h");
     assert_eq!(row.angles, [None; 3]);
-    let none = angles_of(&layout_of_markers(), UPRIGHT).step(&sights);
+    let none = angles_of(&layout("MARKERS"), UPRIGHT).step(&sights);
     assert_eq!((none.angles.len(), none.lost), (0, vec![0, 7]));
-}
-
-fn layout_of_markers() -> Layout {
-    layout("MARKERS")
 }
 
 #[test]
 fn markers_that_coincide_have_no_direction() {
     let layout = shared();
-    let info = UPRIGHT;
     let mut points = finger(0.0, [10.0, 20.0, 30.0]);
     points[2] = points[1];
-    let row = angles_of(&layout, info).step(&seen(&points));
+    let row = angles_of(&layout, UPRIGHT).step(&seen(&points));
     assert_eq!(row.status(&layout), "lost: b c");
     assert!(row.angles[0].is_none() && row.angles[1].is_none() && row.angles[2].is_some());
     // 0.01 px of error each: 0.014 px of their distance.
     for (distance, defined) in [(0.04, false), (0.045, true)] {
         points[2] = [points[1][0] + distance, points[1][1]];
-        assert_eq!(angles_of(&layout, info).step(&seen(&points)).angles[0].is_some(), defined, "{distance} px");
+        let row = angles_of(&layout, UPRIGHT).step(&seen(&points));
+        assert_eq!(row.angles[0].is_some(), defined, "{distance} px");
     }
     let exact: Vec<Sight> = seen(&points).iter().map(|_| seen_with([5.0, 5.0], [0.0; 3])).collect();
-    assert!(angles_of(&layout, info).step(&exact).angles.iter().all(Option::is_none));
+    assert!(angles_of(&layout, UPRIGHT).step(&exact).angles.iter().all(Option::is_none));
     let wild: Vec<Sight> = points.iter().chain([[0.0; 2]; 3].iter()).map(|&p| seen_with(p, [f64::NAN; 3])).collect();
-    assert!(angles_of(&layout, info).step(&wild).angles.iter().all(Option::is_none), "an error that is no number");
+    assert!(angles_of(&layout, UPRIGHT).step(&wild).angles.iter().all(Option::is_none), "an error that is no number");
 }
 
 /// Covariances that are neither round nor alike.
@@ -228,15 +224,8 @@ fn standard_errors_are_those_of_finite_differences() {
     for (layout, points) in
         [(pairs(), two_each(finger(15.0, [20.0, 75.0, 30.0]))), (shared(), finger(15.0, [20.0, 75.0, 30.0]).to_vec())]
     {
-        for (turn, aspect) in [(Turn::None, 1.0), (Turn::Quarter, 1.0), (Turn::Half, 1.25), (Turn::ThreeQuarters, 0.8)]
-        {
-            let info = (turn, aspect);
-            let row_of = |points: &[[f64; 2]]| {
-                let mut sights: Vec<Sight> =
-                    points.iter().enumerate().map(|(k, &p)| seen_with(p, covariance(k))).collect();
-                sights.resize(8, Sight::Lost(Loss::NotFound));
-                angles_of(&layout, info).step(&sights)
-            };
+        for info in [(Turn::None, 1.0), (Turn::Quarter, 1.0), (Turn::Half, 1.25), (Turn::ThreeQuarters, 0.8)] {
+            let row_of = |points: &[[f64; 2]]| angles_of(&layout, info).step(&all_with(points, covariance));
             let row = row_of(&points);
             let mut variances = [0.0; 3];
             for marker in 0..points.len() {
@@ -270,12 +259,8 @@ fn monte_carlo(
     joint: usize,
 ) -> (f64, f64) {
     const DRAWS: usize = 20_000;
-    let sights = |at: &[[f64; 2]]| -> Vec<Sight> {
-        let mut sights: Vec<Sight> = at.iter().enumerate().map(|(k, &p)| seen_with(p, covariance(k))).collect();
-        sights.resize(8, Sight::Lost(Loss::NotFound));
-        sights
-    };
-    let truth = angles_of(layout, info).step(&sights(points)).angles[joint].unwrap().rad;
+    let step = |at: &[[f64; 2]]| angles_of(layout, UPRIGHT).step(&all_with(at, &covariance)).angles[joint];
+    let truth = step(points).unwrap().rad;
     let roots: Vec<Matrix2<f64>> = (0..points.len())
         .map(|k| {
             let [xx, xy, yy] = covariance(k);
@@ -293,7 +278,7 @@ fn monte_carlo(
                 [p[0] + error.x, p[1] + error.y]
             })
             .collect();
-        if let Some(angle) = angles_of(layout, info).step(&sights(&drawn)).angles[joint] {
+        if let Some(angle) = step(&drawn) {
             let z = (angle.rad - truth) / angle.sd_rad;
             squares += z * z;
             within += usize::from(z.abs() <= 1.0);

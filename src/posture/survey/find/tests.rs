@@ -121,27 +121,3 @@ fn markers_near_one_another_are_two_blobs() {
     let found = blobs(&stage, RED);
     assert!(found.len() >= 2 && found[1].contrast > 0.3, "{found:?}");
 }
-
-/// `cargo test --release --lib time_of_a_whole_frame -- --ignored --nocapture`
-#[test]
-#[ignore = "a figure, not a test: how long the search of whole frames takes"]
-fn time_of_a_whole_frame() {
-    for (width, height) in [(1280, 720), (1920, 1080), (3840, 2160)] {
-        let mut stage = Stage::new(width, height, SKIN);
-        let colours = [PINK, BLUE, GREEN, YELLOW];
-        for (k, colour) in colours.into_iter().enumerate() {
-            stage.disc([200.0 + 100.0 * k as f64, 300.0], 10.0, colour);
-        }
-        let picture = stage.picture(1);
-        let frame = picture.frame(0, 0.0);
-        let (mut finder, mut blobs) = (Finder::default(), Vec::new());
-        let paints = colours.map(|colour| Paint::new(colour, &Matrix::BT709, false));
-        let start = std::time::Instant::now();
-        const ROUNDS: u32 = 10;
-        for _ in 0..ROUNDS {
-            finder.load(&frame, None);
-            paints.iter().for_each(|paint| finder.find(&frame, paint, &mut blobs));
-        }
-        eprintln!("{width}x{height}: {:?} for {} colours", start.elapsed() / ROUNDS, paints.len());
-    }
-}
