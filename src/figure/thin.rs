@@ -221,12 +221,10 @@ mod tests {
         let mut thinned = Thinned::default();
         let rows = 100_003;
         for k in 0..rows {
-            let deg = if k == 77_777 {
-                500.0
-            } else if k == 3 {
-                -400.0
-            } else {
-                (k % 100) as f64
+            let deg = match k {
+                3 => -400.0,
+                77_777 => 500.0,
+                _ => (k % 100) as f64,
             };
             thinned.push(k as f64, [known(deg), if k % 1000 == 0 { None } else { known(1.0) }].into_iter());
         }

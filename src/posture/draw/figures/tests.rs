@@ -39,11 +39,9 @@ fn drawn(figures: &AngleFigures, name: &str, coupling: bool) -> Drawn {
 fn the_coupled_joints_are_the_last_two_along_the_finger() {
     let layout = layout();
     assert_eq!(last_two(&layout), Some([2, 0]), "J2 and J3");
-    assert_eq!(
-        last_two(&layout.wanting(&["J1".into(), "J2".into()]).unwrap()),
-        Some([1, 0]).map(|_: [usize; 2]| [0, 1])
-    );
-    assert_eq!(last_two(&layout.wanting(&["J1".into(), "J3".into()]).unwrap()), None, "they do not touch");
+    let two = |joints: [&str; 2]| last_two(&layout.wanting(&joints.map(Into::into)).unwrap());
+    assert_eq!(two(["J1", "J2"]), Some([0, 1]));
+    assert_eq!(two(["J1", "J3"]), None, "they do not touch");
 }
 
 #[test]

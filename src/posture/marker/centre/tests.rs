@@ -94,9 +94,9 @@ impl Scene {
 
     /// The first disc's look, as it is when nothing covers it.
     fn look(&self) -> Look {
-        let alone = Self { discs: vec![self.discs[0]], ..Scene { format: self.format, ..Scene::new(&[]) } };
-        let picture = Self { siting: self.siting, shading: self.shading, noise: self.noise, ..alone }.picture();
         let disc = self.discs[0];
+        let Self { format, siting, shading, noise, .. } = *self;
+        let picture = Self { format, siting, shading, noise, ..Scene::new(&[disc]) }.picture();
         let near = [disc.at[0] + 0.3, disc.at[1] - 0.4];
         let mut scratch = Scratch::default();
         Look::learn(&picture.frame(0, 0.0), self.siting, near, 1.1 * disc.radius, &mut scratch)
