@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use lunula_ui::{Latest, Prompting, prompt};
 use serde_json::{Value, json};
-use util::{Asks, Running, serve};
+use util::{Running, serve};
 
 /// A prompter whose ring goes round, a newton out in six seconds, and presses ever harder and less.
 struct Bench {

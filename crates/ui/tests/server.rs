@@ -9,7 +9,7 @@ use std::net::TcpStream;
 use std::path::Path;
 
 use lunula_ui::{Latest, Server, Settings, UiError, live, results};
-use util::{Answer, Asks, run, serve};
+use util::{Answer, run, serve};
 
 fn one_run(dir: &Path) {
     let at = dir.join("<img src=x onerror=alert(1)>");

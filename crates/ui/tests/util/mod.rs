@@ -48,13 +48,6 @@ impl Drop for Running {
     }
 }
 
-impl Running {
-    /// The address of the page.
-    pub fn url(&self) -> String {
-        format!("http://{}/#{}", self.at, self.token)
-    }
-}
-
 /// An answer: its status, its head, its body.
 pub struct Answer {
     pub status: u16,
@@ -62,14 +55,13 @@ pub struct Answer {
     pub body: String,
 }
 
-pub trait Asks {
-    fn sends(&self, text: &str) -> Answer;
-    fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer;
-    fn cookie(&self) -> String;
-}
+impl Running {
+    /// The address of the page.
+    pub fn url(&self) -> String {
+        format!("http://{}/#{}", self.at, self.token)
+    }
 
-impl Asks for Running {
-    fn sends(&self, text: &str) -> Answer {
+    pub fn sends(&self, text: &str) -> Answer {
         let mut stream = TcpStream::connect(&self.at).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         // Whoever is not listened to may find the connection reset: an answer without a status.
@@ -82,7 +74,7 @@ impl Asks for Running {
         Answer { status, head: head.to_lowercase(), body: body.to_owned() }
     }
 
-    fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer {
+    pub fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer {
         self.sends(&format!(
             "{method} {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {}\r\n{headers}\r\n{body}",
             self.at,
@@ -91,7 +83,7 @@ impl Asks for Running {
     }
 
     /// As the page does: the token for a cookie.
-    fn cookie(&self) -> String {
+    pub fn cookie(&self) -> String {
         let origin = format!("Origin: http://{}\r\n", self.at);
         let answer = self.asks("POST", "/api/session", &origin, &self.token);
         assert_eq!(answer.status, 204, "{}", answer.head);
