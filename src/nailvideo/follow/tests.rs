@@ -30,9 +30,6 @@ fn errors(scene: &Scene, frames: usize, shot: impl Fn(usize) -> Shot) -> ([f64; 
                 all.push(error);
                 within[0] += f64::from(u8::from(error <= place.se_px));
                 within[1] += f64::from(u8::from(error <= 2.0 * place.se_px));
-                if std::env::var_os("SHOW").is_some() {
-                    println!("{k} {error:.3} se {:.3} ncc {:.3} in {:.3}", place.se_px, place.ncc, place.inliers);
-                }
             }
             Err(lost) => println!("{k}: {}", lost.name()),
         }

@@ -204,27 +204,22 @@ mod tests {
     #[test]
     fn a_nail_that_an_edge_cuts_off_and_several_in_one_outline_are_doubted() {
         let up = Axis::from_clockwise_rad(0.0);
-        let oval = |center: [f64; 2], radii: [f64; 2], low: f64| {
+        let around = |at: &dyn Fn(f64, f64) -> [f64; 2]| {
             let angles = (0..90).map(|k| f64::from(k) * std::f64::consts::TAU / 90.0);
-            let points: Vec<[f64; 2]> = angles
-                .map(|angle| [center[0] + radii[0] * angle.cos(), center[1] + radii[1] * angle.sin()])
-                .map(|[x, y]| [x, y.max(low)])
-                .collect();
+            let points: Vec<[f64; 2]> = angles.map(|angle| at(angle.cos(), angle.sin())).collect();
             Outline::new(&points).expect("an outline")
         };
-        let said = |outline: &Outline| {
-            let frame = NailFrame::new(outline, up).expect("large enough");
-            frame.doubt(outline, [200, 150]).unwrap_or_default()
+        let oval = |center: [f64; 2], radii: [f64; 2], low: f64| {
+            around(&|cos, sin| [center[0] + radii[0] * cos, (center[1] + radii[1] * sin).max(low)])
         };
+        let doubt = |outline: &Outline, picture: [u32; 2]| {
+            NailFrame::new(outline, up).expect("large enough").doubt(outline, picture)
+        };
+        let said = |outline: &Outline| doubt(outline, [200, 150]).unwrap_or_default();
         // A square nail that fills its picture only touches the edges.
-        let square: Vec<[f64; 2]> = (0..90)
-            .map(|k| f64::from(k) * std::f64::consts::TAU / 90.0)
-            .map(|angle| [angle.cos(), angle.sin()].map(|c: f64| c.signum() * c.abs().sqrt()))
-            .map(|[x, y]| [29.5 + 30.0 * x, 39.5 + 40.0 * y])
-            .collect();
-        let outline = Outline::new(&square).expect("an outline");
-        let frame = NailFrame::new(&outline, up).expect("large enough");
-        assert_eq!(frame.doubt(&outline, [60, 80]), None);
+        let rounded = |c: f64| c.signum() * c.abs().sqrt();
+        let square = around(&|cos, sin| [29.5 + 30.0 * rounded(cos), 39.5 + 40.0 * rounded(sin)]);
+        assert_eq!(doubt(&square, [60, 80]), None);
         // Whole, also at the edge; cut off by it, as masks are, and as a detected outline ends some pixels beyond it.
         for y in [75.0, 39.6, 38.8] {
             assert_eq!(said(&oval([100.0, y], [30.0, 40.0], -0.5)), "", "{y}");
@@ -233,13 +228,11 @@ mod tests {
             assert!(said(&oval([100.0, y], [30.0, 40.0], low)).contains("cut off by the edge"), "{y} {low}");
         }
         assert!(said(&oval([199.0, 75.0], [30.0, 40.0], -0.5)).is_empty(), "drawn beyond the edge");
-        let turned: Vec<[f64; 2]> =
-            oval([0.0, 100.0], [40.0, 30.0], -0.5).points().iter().map(|p| [p[1], p[0]]).collect();
-        let cut: Vec<[f64; 2]> = turned.iter().map(|[x, y]| [x.min(199.0 - 80.0), *y + 60.0]).collect();
+        let turned = oval([0.0, 100.0], [40.0, 30.0], -0.5);
+        let cut: Vec<[f64; 2]> = turned.points().iter().map(|[y, x]| [x.min(199.0 - 80.0), *y + 60.0]).collect();
         let outline = Outline::new(&cut).expect("an outline");
-        let frame = NailFrame::new(&outline, up).expect("large enough");
-        assert!(frame.doubt(&outline, [120, 150]).is_some_and(|said| said.contains("cut off")), "to the right");
-        assert_eq!(frame.doubt(&outline, [200, 150]), None);
+        assert!(doubt(&outline, [120, 150]).is_some_and(|said| said.contains("cut off")), "to the right");
+        assert_eq!(doubt(&outline, [200, 150]), None);
         assert!(said(&oval([100.0, 75.0], [80.0, 35.0], -0.5)).contains("2.3 times as wide as long"));
     }
 

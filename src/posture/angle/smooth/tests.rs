@@ -165,29 +165,17 @@ fn bierman_s_form_is_the_least_squares_solution() {
         right[3 * k] += seen.value / (seen.sd * seen.sd);
         if k > 0 {
             let t = seen.time - series[k - 1].time;
-            let q = parameters.jerk;
-            let noise = nalgebra::Matrix3::new(
-                t.powi(5) / 20.0,
-                t.powi(4) / 8.0,
-                t.powi(3) / 6.0,
-                t.powi(4) / 8.0,
-                t.powi(3) / 3.0,
-                t * t / 2.0,
-                t.powi(3) / 6.0,
-                t * t / 2.0,
-                t,
-            ) * q;
+            let divisors = [[20.0, 8.0, 6.0], [8.0, 3.0, 2.0], [6.0, 2.0, 1.0]];
+            let noise =
+                nalgebra::Matrix3::from_fn(|r, c| t.powi(5 - (r + c) as i32) / divisors[r][c]) * parameters.jerk;
             let weight = noise.try_inverse().unwrap();
             let step = nalgebra::Matrix3::new(1.0, t, 0.5 * t * t, 0.0, 1.0, t, 0.0, 0.0, 1.0);
             let mut both = nalgebra::Matrix3x6::<f64>::zeros();
             both.fixed_view_mut::<3, 3>(0, 0).copy_from(&-step);
             both.fixed_view_mut::<3, 3>(0, 3).copy_from(&nalgebra::Matrix3::identity());
             let add = both.transpose() * weight * both;
-            for r in 0..6 {
-                for c in 0..6 {
-                    normal[(3 * (k - 1) + r, 3 * (k - 1) + c)] += add[(r, c)];
-                }
-            }
+            let mut part = normal.fixed_view_mut::<6, 6>(3 * (k - 1), 3 * (k - 1));
+            part += add;
         }
     }
     let inverse = normal.try_inverse().unwrap();
