@@ -145,22 +145,11 @@ mod tests {
         area.draw_text("l l l l l l l l l l", &("sans-serif", 14).into_font().into(), (5, 5)).unwrap();
         drop(area);
         let dark = |x: usize| (0..30).map(|y| 255.0 - f64::from(pixels[(y * 200 + x) * 3])).sum::<f64>();
-        let columns: Vec<f64> = (0..200).map(dark).collect();
-        // The middle of each stroke, by its ink.
-        let mut middles = Vec::new();
-        let mut x = 0;
-        while x < 200 {
-            let from = x;
-            while x < 200 && columns[x] > 0.0 {
-                x += 1;
-            }
-            if x > from {
-                let ink: f64 = columns[from..x].iter().sum();
-                let moment: f64 = (from..x).map(|x| x as f64 * columns[x]).sum();
-                middles.push(moment / ink);
-            }
-            x += 1;
-        }
+        let columns: Vec<[f64; 2]> = (0..200).map(|x| [x as f64, dark(x)]).collect();
+        let strokes = columns.chunk_by(|a, b| (a[1] > 0.0) == (b[1] > 0.0)).filter(|stroke| stroke[0][1] > 0.0);
+        // The middle of each, by its ink.
+        let moment = |stroke: &[[f64; 2]], power: i32| stroke.iter().map(|[x, ink]| x.powi(power) * ink).sum::<f64>();
+        let middles: Vec<f64> = strokes.map(|stroke| moment(stroke, 1) / moment(stroke, 0)).collect();
         assert_eq!(middles.len(), 10, "{middles:?}");
         let font = FONT.as_scaled(14.0);
         let pitch: f32 = ['l', ' '].map(|letter| font.h_advance(font.glyph_id(letter))).iter().sum();

@@ -104,18 +104,19 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    fn cycles() -> (Vec<f64>, Vec<f64>, Cycles) {
+    /// The curve of an output of row and drive over the first legs of five cycles.
+    fn curve(legs: usize, bins: usize, output: impl Fn(usize, f64) -> f64) -> Curve {
         let time_s: Vec<f64> = (0..1250).map(|k| f64::from(k) / 12.5).collect();
         let drive: Vec<f64> = time_s.iter().map(|t| 2.0 * (TAU * 0.05 * t).cos()).collect();
-        let cycles = Cycles::of(&time_s, &drive);
-        (time_s, drive, cycles)
+        let output: Vec<f64> = drive.iter().enumerate().map(|(row, drive)| output(row, *drive)).collect();
+        let mut cycles = Cycles::of(&time_s, &drive);
+        cycles.legs.truncate(legs);
+        Curve::of(&[Source { legs: &cycles.legs, drive: &drive, output: &output }], [-2.0, 2.0], bins)
     }
 
     #[test]
     fn a_straight_response_comes_back_straight_and_the_same_both_ways() {
-        let (_, drive, cycles) = cycles();
-        let output: Vec<f64> = drive.iter().map(|drive| 1.0 + 0.3 * drive).collect();
-        let curve = Curve::of(&[Source { legs: &cycles.legs, drive: &drive, output: &output }], [-2.0, 2.0], 20);
+        let curve = curve(10, 20, |_, drive| 1.0 + 0.3 * drive);
         for (k, &at) in curve.at.iter().enumerate() {
             let (up, down) = (curve.rising[k].unwrap(), curve.falling[k].unwrap());
             // At the ends, half a bin from what is known, it is off by up to that.
@@ -127,21 +128,15 @@ mod tests {
 
     #[test]
     fn the_spread_over_cycles_is_found() {
-        let (_, drive, cycles) = cycles();
         // Each cycle has an offset of its own.
-        let own = [0.0, 0.1, -0.1, 0.2, -0.2];
-        let output: Vec<f64> = (0..1250).map(|row| drive[row] + own[row / 250]).collect();
-        let curve = Curve::of(&[Source { legs: &cycles.legs, drive: &drive, output: &output }], [-2.0, 2.0], 10);
+        let curve = curve(10, 10, |row, drive| drive + [0.0, 0.1, -0.1, 0.2, -0.2][row / 250]);
         let sd = curve.rising[4].unwrap().sd.unwrap();
         assert!((sd - 0.025_f64.sqrt()).abs() < 2e-3, "{sd}");
     }
 
     #[test]
     fn missing_outputs_are_missing_and_one_leg_has_no_spread() {
-        let (_, drive, mut cycles) = cycles();
-        cycles.legs.truncate(1);
-        let output: Vec<f64> = drive.iter().map(|&drive| if drive > 1.0 { f64::NAN } else { drive }).collect();
-        let curve = Curve::of(&[Source { legs: &cycles.legs, drive: &drive, output: &output }], [-2.0, 2.0], 4);
+        let curve = curve(1, 4, |_, drive| if drive > 1.0 { f64::NAN } else { drive });
         assert_eq!(curve.falling[3], None);
         assert_eq!(curve.falling[0].unwrap().sd, None);
         assert!(curve.rising.iter().all(Option::is_none) && curve.middle().is_empty());

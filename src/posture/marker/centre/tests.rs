@@ -181,17 +181,10 @@ fn siting_is_told_from_fits_made_with_another() {
             for k in 0..8 {
                 let at = [46.0 + 0.43 * f64::from(k), 40.0 - 0.31 * f64::from(k)];
                 let colour = if k % 2 == 0 { PINK } else { YELLOW };
-                let mut scene = Scene::new(&[Disc { at, radius: 8.0, colour }]);
+                let mut scene = Scene { siting: truth, ..Scene::new(&[Disc { at, radius: 8.0, colour }]) };
                 scene.format.subsampling = subsampling;
-                let look = Scene { siting: truth, ..scene }.look();
-                let scene = Scene {
-                    siting: truth,
-                    noise: 2.0,
-                    seed: 7 + k as u64,
-                    format: Format { width: 96, height: 80, subsampling, depth: 8 },
-                    ..Scene::new(&[Disc { at, radius: 8.0, colour }])
-                };
-                let picture = scene.picture();
+                let look = scene.look();
+                let picture = Scene { noise: 2.0, seed: 7 + k as u64, ..scene }.picture();
                 let fit = centre(&picture.frame(0, 0.0), assumed, &look, at, &mut Scratch::default()).unwrap();
                 evidence.push(fit.chroma_shift_px);
                 assert!(k >= 5 || evidence.siting().is_none(), "too early");
