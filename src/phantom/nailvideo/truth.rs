@@ -140,8 +140,8 @@ mod tests {
         }
     }
 
-    /// What hides some photodiodes in frame 30 and none in frames 5 and 62: of each photodiode in frame 30 the share that
-    /// is hidden, and its luma with that and without.
+    /// What hides some photodiodes in frame 30 and none in frames 5 and 62: of each photodiode in frame 30 the share
+    /// that is hidden, and its luma with that and without.
     fn hidden(scene: &Scene, options: NailVideoOptions) -> Vec<[f64; 3]> {
         let bare = Scene::new(NailVideoOptions { rod: Vec::new(), finger: Vec::new(), ..options }).unwrap();
         for frame in [5, 62] {
@@ -162,10 +162,10 @@ mod tests {
         let scene = Scene::new(options.clone()).unwrap();
         let covered = hidden(&scene, options);
         assert!(covered.iter().any(|one| one[0] >= 0.9) && covered.iter().any(|one| one[0] == 0.0), "{covered:?}");
-        for one @ [hidden, with, without] in covered {
+        for (k, [hidden, with, without]) in covered.into_iter().enumerate() {
             // The rod is 40 levels and more darker; its border is soft over a pixel.
             let is_right = if hidden == 0.0 { with >= without - 3.0 } else { with < without - 30.0 * (hidden - 0.1) };
-            assert!(is_right, "{one:?}");
+            assert!(is_right, "P{}: {hidden} {with} {without}", k + 1);
         }
         assert!(
             (90..100)
@@ -179,10 +179,10 @@ mod tests {
         let options = NailVideoOptions { finger: vec![[20, 30]], ..small(NailProtocol::Rest) };
         let covered = hidden(&Scene::new(options.clone()).unwrap(), options);
         assert!([1.0, 0.0].iter().all(|share| covered.iter().any(|one| one[0] == *share)), "{covered:?}");
-        for one @ [hidden, with, without] in covered {
+        for (k, [hidden, with, without]) in covered.into_iter().enumerate() {
             // It is another's colour, however near.
             let is_other = (with - without).abs() > 0.2;
-            assert!(if hidden == 0.0 { !is_other } else { hidden < 1.0 || is_other }, "{one:?}");
+            assert!(if hidden == 0.0 { !is_other } else { hidden < 1.0 || is_other }, "P{}", k + 1);
         }
     }
 
