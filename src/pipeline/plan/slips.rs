@@ -1,7 +1,7 @@
 //! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, or
-//! that lacks it, and files whose names fit a pattern but for the case of letters, or are not UTF-8. And what is done apart for one:
-//! values of a table or of files' names, of a key that a stage is done for each of, that differ in case and spaces
-//! only.
+//! that lacks it, and files whose names fit a pattern but for the case of letters, or are not UTF-8. And what is done
+//! apart for one: values of a table or of files' names, of a key that a stage is done for each of, that differ in case
+//! and spaces only.
 //!
 //! A value is a slip where no `where` asks for it as it is written, and it differs from one that is asked for only in
 //! case and spaces; or by one letter, where no task works on the row. Values that differ in a digit, or in their first
