@@ -36,7 +36,7 @@ pub struct Contacts {
     /// The time between rows of which contact is known, seconds.
     pub seconds: f64,
     /// The time between rows of which one does not say whether the finger touches, seconds; gaps are not counted.
-    pub unknown_s: f64,
+    pub(crate) unknown_s: f64,
     last: Option<(f64, Option<bool>)>,
 }
 

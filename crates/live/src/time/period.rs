@@ -9,7 +9,7 @@ pub struct Period {
     steps_s: [f64; STEPS],
     filled: usize,
     /// The median step, seconds; none before three steps.
-    pub median_s: Option<f64>,
+    pub(crate) median_s: Option<f64>,
 }
 
 impl Period {

@@ -36,7 +36,7 @@ pub struct Unwrap {
     whole: bool,
     bits: Option<u32>,
     /// How often it wrapped.
-    pub wraps: u64,
+    pub(crate) wraps: u64,
 }
 
 impl Unwrap {

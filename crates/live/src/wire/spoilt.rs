@@ -58,7 +58,7 @@ pub struct SpoiltRows {
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
     /// Spoilt rows of each kind that came.
-    pub kinds: Vec<SpoiltRows>,
+    pub(crate) kinds: Vec<SpoiltRows>,
 }
 
 impl Tally {
