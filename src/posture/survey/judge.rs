@@ -109,10 +109,8 @@ impl Surveyor<'_> {
     /// What to say of segments between whose markers a spot lies that has no name: where the colours of two markers are
     /// exchanged in the marker file, one of a segment is passed over.
     pub(super) fn passed_over(&self, best: &Hypothesis) -> Vec<String> {
-        let spot_of = |marker: usize| {
-            let place = self.chain.links.iter().position(|link| link.marker == marker);
-            best.naming[place.filter(|&place| self.is_needed(place))?]
-        };
+        let spot_of =
+            |marker: usize| best.naming[self.chain.place_of(marker).filter(|&place| self.is_needed(place))?];
         let stranger = |[a, b]: [usize; 2]| {
             let nameless = (0..self.spots.all.len()).filter(|spot| !best.naming.contains(&Some(*spot)));
             nameless

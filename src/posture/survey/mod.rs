@@ -342,10 +342,9 @@ impl<'a> Surveyor<'a> {
 
     /// How long segments are in a naming: the mean of the shortest and longest seen.
     fn lengths(&self, best: &Hypothesis) -> Vec<Option<f64>> {
-        let place_of = |marker: usize| self.chain.links.iter().position(|link| link.marker == marker);
         (self.layout.segments.iter())
             .map(|segment| {
-                let place = place_of(segment.markers[1])?;
+                let place = self.chain.place_of(segment.markers[1])?;
                 let link = self.chain.links[place];
                 let (shortest, longest) = best.spans[place];
                 let before = link.before.map(|before| self.chain.links[before].marker);

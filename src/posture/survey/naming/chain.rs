@@ -25,6 +25,10 @@ pub(crate) struct Chain {
     pub(crate) links: Vec<Link>,
 }
 
+fn place(links: &[Link], marker: usize) -> Option<usize> {
+    links.iter().position(|link| link.marker == marker)
+}
+
 impl Chain {
     /// The chain of a layout: the needed markers, and those that have a colour in common with another one, for they
     /// help to tell which is which.
@@ -58,7 +62,6 @@ impl Chain {
             done[segment] = true;
             let bends = finger_joints.contains(&segment);
             let [first, second] = layout.segments[segment].markers;
-            let place = |links: &[Link], marker: usize| links.iter().position(|link| link.marker == marker);
             // The last marker before this segment that is in the chain, further and further towards the hand.
             let mut hung = None;
             let (mut at, mut steps) = (parent[segment], 0);
@@ -88,6 +91,11 @@ impl Chain {
             chain.links.iter_mut().for_each(|link| link.bends = true);
         }
         chain
+    }
+
+    /// The place of a marker; none of one that is not in the chain.
+    pub(crate) fn place_of(&self, marker: usize) -> Option<usize> {
+        place(&self.links, marker)
     }
 
     fn children(&self, place: usize) -> usize {
