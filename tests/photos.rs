@@ -92,13 +92,29 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
     dir.lunula(&["photos", "set/photos", "--out", "copy"]).expect(0);
     dir.words("photos merge first copy --out twice")
         .expect(0)
-        .says("copy/normalized/flexion/again.png, first/normalized/flexion/s05.png: the same to the byte");
+        .says("copy/normalized/flexion/again.png, first/normalized/flexion/s05.png: the same to the byte")
+        .says("photographs of several people are one picture")
+        .says("again of flexion and s05 of flexion");
     // A subject in two parts, and parts made differently, are refused; what stood stays.
     dir.lunula(&["photos", "merge", "whole", "first", "--out", "merged"]).expect(2).says("subject `s02`");
     dir.lunula(&["photos", "set/photos", "--out", "small", "--size", "64"]).expect(0);
     dir.lunula(&["photos", "merge", "first", "small", "--out", "merged"]).expect(2).says("made with");
     dir.lunula(&["photos", "merge", "set", "--out", "merged"]).expect(2).says("maps/<pose>.partial.npz");
     assert!(dir.bytes_of("merged") == merged);
+}
+
+#[test]
+fn a_photograph_saved_again_for_another_person_is_warned_of() {
+    let dir = Dir::new();
+    write(&small_set(4, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
+    dir.words("photos set/photos --out out").expect(0).never_says("one picture");
+    let photo = image::open(dir.path("set/photos/flexion/s02.png")).expect("a picture").to_rgb8();
+    let file = std::fs::File::create(dir.place("set/photos/nominal/t.jpg")).expect("a file");
+    image::codecs::jpeg::JpegEncoder::new_with_quality(file, 70).encode_image(&photo).expect("a picture");
+    std::fs::copy(dir.path("set/photos/flexion/s02.json"), dir.path("set/photos/nominal/t.json")).expect("a copy");
+    dir.words("photos set/photos --out out")
+        .expect(0)
+        .says("one picture, perhaps saved again, resized or turned: nominal/t.jpg as t of nominal and flexion/s02.png");
 }
 
 #[test]

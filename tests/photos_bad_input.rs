@@ -177,9 +177,11 @@ fn a_photograph_under_several_names_is_warned_of() {
     assert_eq!(used(&dir), ["a", "b", "c"], "which one it is nobody knows");
 }
 
-/// The drawn nail at a share of its brightness, with a pattern of its own, so that no two are alike.
+/// The drawn nail at a share of its brightness, with a pattern and a background of its own, so that no two are alike.
 fn shaded(share: f64, seed: u32) -> image::RgbImage {
     let mut nail = drawn_nail();
+    let beside = |x: u32, y: u32| x < 30 && y / 14 == seed || x > 130 && y / 14 == 3 * seed % 10;
+    nail.enumerate_pixels_mut().filter(|(x, y, _)| beside(*x, *y)).for_each(|(.., pixel)| pixel.0 = [90, 50, 40]);
     for (x, y, pixel) in nail.enumerate_pixels_mut() {
         let own = ((x * 7 + y * 13 + seed * 31) % 11) as u8;
         pixel.0 = pixel.0.map(|level| (share * f64::from(level)) as u8 + own);

@@ -15,6 +15,7 @@ use crate::photo::outline::Source;
 use crate::photo::pose;
 use crate::photo::results::NailRow;
 use crate::photo::set::{Photo, PhotoSet};
+use crate::photo::sums::{Look, one_picture, seen_again};
 
 /// A nail so many times brighter or darker than the median of all is of another exposure or depth (assumed: skin tones
 /// differ by 3 in green, exposures of one set by 2).
@@ -92,10 +93,11 @@ fn elsewhere(nails: &[Used]) -> Option<String> {
 }
 
 /// What there is to say.
-pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow]) -> Vec<String> {
+pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow], looks: &[(&Photo, Look)]) -> Vec<String> {
     let nails: Vec<Used> = rows.iter().filter_map(|row| Used::of(set, row)).collect();
     let doubts = [
         same_pictures(&nails),
+        saved_again(&nails, looks),
         same_outlines(&nails),
         levels(&nails),
         cut_off(&nails),
@@ -170,6 +172,16 @@ fn same_pictures(nails: &[Used]) -> Option<String> {
         .map(|group| group.iter().map(|nail| as_listed(nail.photo)).collect::<Vec<_>>().join(" and "))
         .collect();
     Some(format!("the same nail to the last digit is counted more than once: {}; keep the right one", some(&names)?))
+}
+
+/// Photographs of several people that look the same, apart from those whose nails are the same to the last digit.
+fn saved_again(nails: &[Used], looks: &[(&Photo, Look)]) -> Option<String> {
+    let surveys = |photo: &Photo| -> Vec<Survey> {
+        nails.iter().filter(|nail| nail.photo.path == photo.path).map(|nail| nail.survey).collect()
+    };
+    let is_new = |one: &Photo, other: &Photo| one.subject != other.subject && surveys(one) != surveys(other);
+    let pairs = seen_again(looks.iter().map(|(photo, look)| (*photo, look)), is_new);
+    one_picture(&pairs.into_iter().map(|pair| pair.map(as_listed)).collect::<Vec<_>>())
 }
 
 /// Outlines that several photographs share: drawn for one of them.

@@ -30,7 +30,7 @@ use crate::photo::results::{self, DrawnPhotograph, DrawnPose, NailRow, NailTable
 use crate::photo::run::plan::{Foreknown, left_out};
 use crate::photo::run::report::{Findings, HTML, PhotosReport, PoseCount, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
-use crate::photo::sums::{Batch, Member, Members, OF_A_PART};
+use crate::photo::sums::{Batch, Look, Member, Members, OF_A_PART};
 use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph, Profile};
 use crate::stages::Stages;
 
@@ -83,6 +83,7 @@ pub fn run(
     for (photo, one) in set.photos.iter().zip(done) {
         findings.add(photo, one.grey, one.largest, one.profile.as_ref());
         findings.details.extend(one.detail.map(|detail| (photo, detail)));
+        findings.looks.extend(one.look.map(|look| (photo, look)));
         findings.drawn_elsewhere.extend(one.drawn_on.map(|other| (photo, other)));
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
         for (row, thumbnail) in one.nails {
@@ -204,6 +205,8 @@ struct Done {
     fault: Option<SetFault>,
     /// How much fine detail the nails show that were found on it, the median.
     detail: Option<f64>,
+    /// What it looks like, where a nail of it was used.
+    look: Option<Look>,
     /// The photograph that its outlines say they were drawn on, where that is another.
     drawn_on: Option<PathBuf>,
     /// Where it was the last of its pose.
@@ -371,12 +374,15 @@ impl Work<'_> {
                 all => format!("none of its {} nails could be used; the first: {}", all.len(), all[0].0.reason),
             });
         } else {
+            let look = match self.stages.time("look", || Look::of(&picture.image)) {
+                Ok(look) => look,
+                Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
+            };
+            done.look = Some(look.clone());
             self.stages.time("add up", || {
                 let mut pose = locked(&self.poses[photo.pose.as_str()]);
                 let batch = pose.batch.get_or_insert_with(|| Batch::new(self.options.normalization.size));
-                if picture.is_grey() {
-                    batch.mark_grey(&photo.subject);
-                }
+                batch.describe(&photo.subject, picture.is_grey(), look);
                 let added = batch.add(&photo.subject, pictures);
                 added.expect("a set lists a subject once per pose");
             });

@@ -20,7 +20,7 @@ use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NailRow, NailTable, nail_columns};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
-use crate::photo::sums::{Partials, Sums};
+use crate::photo::sums::{Look, Partials, Sums};
 use crate::photograph::Profile;
 use crate::stages::Stage;
 
@@ -96,12 +96,13 @@ fn mixed_poses<'a>(poses: impl Iterator<Item = (&'a str, usize, usize)>) -> Vec<
     said.collect()
 }
 
-/// .. of maps that were made in parts, a photograph a subject.
-pub(in crate::photo) fn mixed_sums(partials: &Partials) -> Vec<String> {
-    mixed_poses(partials.poses.iter().map(|(pose, sums)| {
+/// What is doubtful of maps that were made in parts, a photograph a subject.
+pub(in crate::photo) fn doubts_of_sums(partials: &Partials) -> Vec<String> {
+    let mixed = mixed_poses(partials.poses.iter().map(|(pose, sums)| {
         let grey = sums.grey.len();
         (pose.as_str(), sums.subjects.len() - grey, grey)
-    }))
+    }));
+    mixed.into_iter().chain(partials.one_picture()).collect()
 }
 
 /// So many outlines, and more than this share of all whose finger is looked for, without a clear direction are warned
@@ -129,6 +130,8 @@ pub(in crate::photo) struct Findings<'a> {
     pub(in crate::photo) drawn_elsewhere: Vec<(&'a Photo, PathBuf)>,
     /// Photographs on which nails were found, and how much fine detail those show.
     pub(in crate::photo) details: Vec<(&'a Photo, f64)>,
+    /// What photographs look like of which a nail was used.
+    pub(in crate::photo) looks: Vec<(&'a Photo, Look)>,
     /// Colour and grey photographs by pose.
     colours: BTreeMap<&'a str, [usize; 2]>,
     /// How many photographs of 16 bits, and their largest sample.
@@ -159,6 +162,7 @@ impl<'a> Findings<'a> {
             outlines: None,
             drawn_elsewhere: Vec::new(),
             details: Vec::new(),
+            looks: Vec::new(),
             colours: BTreeMap::new(),
             sixteen: (0, 0),
             profiles: BTreeMap::new(),
@@ -210,7 +214,7 @@ impl<'a> Findings<'a> {
             .chain(self.unclear())
             .chain(self.blurred())
             .chain(self.overexposed())
-            .chain(doubts(self.set, &self.rows))
+            .chain(doubts(self.set, &self.rows, &self.looks))
             .collect()
     }
 
@@ -375,7 +379,7 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
         left_out
             .push("channels compared: over all subjects, so photographs are needed: `lunula photos --channels`".into());
     }
-    let warnings = mixed_sums(partials);
+    let warnings = doubts_of_sums(partials);
     Report { left_out, warnings, notes, ..Report::new("photos merge", watch, figures) }
 }
 

@@ -3,6 +3,7 @@
 //! In: one subject's pictures after the other's. Out: the sums that adding each at once would have given. Measured: 128
 //! pictures of 400 x 400 pixels took 0.08 s of processor time one by one, 0.03 s by eight (`lunula photos -v`).
 
+use super::look::Look;
 use super::maps::{DuplicateSubject, Sums};
 use crate::photo::normalize::Normalized;
 
@@ -37,9 +38,10 @@ impl Batch {
         Ok(())
     }
 
-    /// Says that a subject's photograph is grey.
-    pub(in crate::photo) fn mark_grey(&mut self, subject: &str) {
-        self.sums.grey.insert(subject.to_owned());
+    /// Says what a subject's photograph is like.
+    pub(in crate::photo) fn describe(&mut self, subject: &str, is_grey: bool, look: Look) {
+        self.sums.grey.extend(is_grey.then(|| subject.to_owned()));
+        self.sums.looks.insert(subject.to_owned(), look);
     }
 
     /// The sums of all that was added.

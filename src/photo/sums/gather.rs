@@ -22,7 +22,7 @@ use crate::photo::error::MergeError;
 use crate::photo::normalize::Normalization;
 use crate::photo::pose;
 use crate::photo::results::{NailTable, write_maps};
-use crate::photo::run::report::{PoseCount, mixed_sums, one_subject, pose_counts};
+use crate::photo::run::report::{PoseCount, doubts_of_sums, one_subject, pose_counts};
 use crate::stages::Stages;
 
 /// What is gathered, and where results go.
@@ -110,7 +110,7 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
         .into_iter()
         .collect();
     let notes = one_subject(&poses).into_iter().collect();
-    let mut warnings = mixed_sums(&partials);
+    let mut warnings = doubts_of_sums(&partials);
     warnings.extend(pose::doubts(|| members.names()).into_iter().chain(nails.at_one_place()));
     let figures = GatherFigures { poses, sums_added, sums_kept, normalization: partials.normalization, accuracy };
     Ok(Report { left_out, warnings, notes, ..Report::new("maps", watch, figures) }.timed(&stages, start))

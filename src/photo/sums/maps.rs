@@ -8,10 +8,11 @@
 //! Where a photograph shows several nails, their mean is the subject's picture: nails of one hand are not
 //! independent subjects.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ndarray::Array2;
 
+use super::look::Look;
 use crate::photo::normalize::{self, Normalized};
 
 /// Full scale of the quantized values.
@@ -29,6 +30,8 @@ pub struct Sums {
     pub(crate) subjects: BTreeSet<String>,
     /// Those whose photographs are grey.
     pub(crate) grey: BTreeSet<String>,
+    /// What their photographs look like; of sums by an earlier version none.
+    pub(super) looks: BTreeMap<String, Look>,
 }
 
 /// Mean, SD and count over subjects; fractions of full scale.
@@ -47,7 +50,8 @@ impl Sums {
     pub fn new(size: usize) -> Self {
         let pixels = size * size;
         let (sum, sum_sq, count) = (vec![0; pixels], vec![0; pixels], vec![0; pixels]);
-        Self { size, sum, sum_sq, count, subjects: BTreeSet::new(), grey: BTreeSet::new() }
+        let (subjects, grey, looks) = (BTreeSet::new(), BTreeSet::new(), BTreeMap::new());
+        Self { size, sum, sum_sq, count, subjects, grey, looks }
     }
 
     /// Adds a subject, whose picture is the mean of `nails` where they show it.
@@ -120,6 +124,7 @@ impl Sums {
         }
         self.subjects.extend(other.subjects.iter().cloned());
         self.grey.extend(other.grey.iter().cloned());
+        self.looks.extend(other.looks.iter().map(|(subject, look)| (subject.clone(), look.clone())));
         for (a, b) in self.sum.iter_mut().zip(&other.sum) {
             *a += b;
         }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod batch;
 mod gather;
+mod look;
 mod maps;
 mod members;
 mod merge;
@@ -12,6 +13,7 @@ mod partial;
 pub use accuracy::Accuracy;
 pub(super) use batch::Batch;
 pub use gather::{GatherFigures, GatherReport, Gathering, gather};
+pub(super) use look::{Look, one_picture, seen_again};
 pub(super) use maps::mean_of_nails;
 pub use maps::{DuplicateSubject, Maps, Sums};
 pub(super) use members::{Member, Members, OF_A_PART};

@@ -16,6 +16,7 @@ use ndarray_npy::NpzWriter;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::look::{Look, one_picture, seen_again};
 use super::maps::Sums;
 use super::members::{Members, OF_A_PART};
 use super::npz::Npz;
@@ -29,7 +30,7 @@ const FORMAT_OF_ONE: u32 = 2;
 
 /// Bytes of an archive beside its arrays, as it is written: their headers, the directory and a common `meta`.
 const HEADERS: usize = 16 << 10;
-/// Bytes of a partial map's `meta`: a million subjects' names.
+/// Bytes of a partial map's `meta`: what 80,000 subjects' photographs look like.
 const MOST_META: u64 = 64 << 20;
 
 /// Why partial maps can't be read or don't join.
@@ -97,6 +98,9 @@ pub(super) struct Meta {
     /// Those whose photographs are grey.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     grey: BTreeSet<String>,
+    /// What their photographs look like.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    looks: BTreeMap<String, Look>,
 }
 
 /// What a partial map holds.
@@ -114,6 +118,18 @@ pub struct Partials {
     pub normalization: Normalization,
     /// By pose.
     pub poses: BTreeMap<String, Sums>,
+}
+
+impl Partials {
+    /// What to say of people who have one photograph.
+    pub(in crate::photo) fn one_picture(&self) -> Option<String> {
+        let looks = self.poses.iter().flat_map(|(pose, sums)| {
+            sums.looks.iter().map(move |(subject, look)| ((pose.as_str(), subject.as_str()), look))
+        });
+        let pairs = seen_again(looks, |(_, one), (_, other)| one != other);
+        let names = |pair: [(&str, &str); 2]| pair.map(|(pose, subject)| format!("{subject} of {pose}"));
+        one_picture(&pairs.into_iter().map(names).collect::<Vec<_>>())
+    }
 }
 
 /// A file of one pose's sums.
@@ -159,8 +175,8 @@ fn archive(bytes: usize) -> NpzWriter<Cursor<Vec<u8>>> {
 }
 
 fn meta(format: u32, pose: &str, sums: &Sums, normalization: &Normalization) -> serde_json::Result<Array1<u8>> {
-    let (subjects, grey) = (sums.subjects.clone(), sums.grey.clone());
-    let meta = Meta { format, pose: pose.to_owned(), normalization: *normalization, subjects, grey };
+    let (subjects, grey, looks) = (sums.subjects.clone(), sums.grey.clone(), sums.looks.clone());
+    let meta = Meta { format, pose: pose.to_owned(), normalization: *normalization, subjects, grey, looks };
     Ok(Array1::from(serde_json::to_vec(&meta)?))
 }
 
@@ -203,6 +219,7 @@ pub(super) fn add(whole: &mut Sums, file: &Path, meta: Meta, held: Held) -> Resu
         Held::Sums(sums) => whole.merge(&sums),
         Held::One(subject, picture) => {
             whole.grey.extend(meta.grey);
+            whole.looks.extend(meta.looks);
             whole.add(&subject, &[picture])
         }
     };
@@ -239,8 +256,8 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     }
     let meta: Meta = serde_json::from_value(json).map_err(|e| unreadable(e.to_string()))?;
     let size = meta.normalization.check().map_err(unreadable)?.size;
-    if !meta.grey.is_subset(&meta.subjects) {
-        return Err(unreadable("is grey for a subject that it does not hold".into()));
+    if !meta.grey.iter().chain(meta.looks.keys()).all(|subject| meta.subjects.contains(subject)) {
+        return Err(unreadable("describes the photograph of a subject that it does not hold".into()));
     }
     if meta.format == FORMAT_OF_ONE {
         let Some(subject) = meta.subjects.first().filter(|_| meta.subjects.len() == 1).cloned() else {
@@ -255,7 +272,8 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     let sum = npz.square("sum", size).map_err(unreadable)?;
     let sum_sq = npz.square("sum_sq", size).map_err(unreadable)?;
     let count = npz.square("count", size).map_err(unreadable)?;
-    let sums = Sums { size, sum, sum_sq, count, subjects: meta.subjects.clone(), grey: meta.grey.clone() };
+    let (subjects, grey, looks) = (meta.subjects.clone(), meta.grey.clone(), meta.looks.clone());
+    let sums = Sums { size, sum, sum_sq, count, subjects, grey, looks };
     if !sums.are_possible() {
         return Err(unreadable("its sums contradict one another".into()));
     }

@@ -4,6 +4,7 @@
 //! others on which a network stops early. Out: the model file and what it reaches. Rows that are reported are never
 //! those that training has seen.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -198,6 +199,8 @@ pub fn train(
         warnings.extend(repeated(&read.data, &held.data));
     }
     warnings.extend(validation.iter().chain([&training]).filter_map(Merit::warning));
+    warnings.extend(training.of_nothing());
+    notes.extend(several_persons(&read.data, &inputs.data));
     let without = match &validate {
         Some(held) => stages.time("fit without options", || without(&predictor, &read.data, early, &held.data))?,
         None => Vec::new(),
@@ -259,6 +262,22 @@ pub fn train(
         report.unused(&["level"], "intervals come from the recordings of --validate");
     }
     Ok(report.timed(&stages, start))
+}
+
+/// What to say where one model is of several persons.
+fn several_persons(data: &Dataset, files: &[DataFile]) -> Option<String> {
+    // Where nobody says whose a file is, it stands for a person.
+    let is_file = |subject: &&str| files.iter().any(|file| file.name == *subject);
+    let persons = data.recordings().iter().map(|one| one.subject.as_str()).filter(|subject| !is_file(subject));
+    let persons: BTreeSet<&str> = persons.collect();
+    (persons.len() > 1).then(|| {
+        format!(
+            "one model of {} persons ({}): each one's own is mostly better; name files of one person, or write each = \
+             [\"subject\"] in a pipeline",
+            persons.len(),
+            persons.into_iter().collect::<Vec<_>>().join(", ")
+        )
+    })
 }
 
 /// Leaves out the cells that a recording never has: those outside of its nail. Returns what to say of it.

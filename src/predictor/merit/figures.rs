@@ -50,6 +50,24 @@ impl Merit {
     }
 }
 
+/// A model that explains a smaller share of what it was trained on follows nothing (assumed).
+const HARDLY: f64 = 0.1;
+/// Of fewer rows it may by chance.
+const ROWS: usize = 10;
+
+impl Merit {
+    /// What to say of a model of which these are the figures on what it was trained on.
+    pub(in crate::predictor) fn of_nothing(&self) -> Option<String> {
+        let explained = self.r2.0.iter().filter_map(|(_, r2)| *r2).reduce(f64::max)?;
+        (self.rows >= ROWS && explained < HARDLY).then(|| {
+            format!(
+                "the model explains hardly anything of what it was trained on (R2 {explained:.2} at most): does the \
+                 finger press or bend in these recordings, and are the photodiodes on it?"
+            )
+        })
+    }
+}
+
 impl From<&Scores> for Merit {
     fn from(scores: &Scores) -> Self {
         fn by<T>(scores: &Scores, value: fn(&TargetScore) -> T) -> ByTarget<T> {
