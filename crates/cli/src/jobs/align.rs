@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 use clap::Args;
-use lunula::align::{AlignFigures, AlignInputs, AlignOptions, AlignOutputs, AlignReport, plan, run};
-use lunula::job::{Given, Watch};
+use lunula::align::{self, AlignInputs, AlignOptions, AlignOutputs, AlignReport};
+use lunula::job::Given;
 use lunula::words::fixed;
 
-use crate::Common;
-use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
+use crate::{Common, Outcome};
 
 /// Label a photodiode log with joint angles: two clocks tied together, with a certificate of how well
 ///
@@ -71,43 +71,35 @@ impl AlignArgs {
     }
 }
 
-impl Command for AlignArgs {
-    type Figures = AlignFigures;
+pub(crate) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
+    let options = &args.given.options;
+    jobs::run(
+        &args.results.request("align", "steps", &args.given.said),
+        || Ok(align::plan(&args.inputs()?, options, args.outputs().as_ref())?),
+        |watch| Ok(align::run(&args.inputs()?, options, &needed(args.outputs())?, watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "align";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs()?, &self.given.options, self.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
-        Ok(run(&self.inputs()?, &self.given.options, &needed(self.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &AlignReport) {
-        let (tie, rows) = (&report.certificate, &report.certificate.rows);
-        let plus_minus = |sd: Option<f64>, digits: usize| sd.map_or(String::new(), |sd| format!(" ± {sd:.digits$}"));
-        common.say(&format!(
-            "offset {}{} s, drift {}{} ppm ({:?}); {} frames read, {} not",
-            fixed(tie.offset_s, 4),
-            plus_minus(tie.offset_sd_s, 4),
-            fixed(tie.drift_ppm, 1),
-            plus_minus(tie.drift_sd_ppm, 1),
-            tie.method,
-            tie.frames_read,
-            tie.frames_abstained
-        ));
-        common.say(&format!(
-            "{} of {} rows labelled; {} with a fault of the sensor",
-            rows.rows_labelled, report.rows, report.rows_with_faults
-        ));
-        common.say(&format!(
-            "without: {} before the video, {} after it, {} in gaps",
-            rows.before_the_video, rows.after_the_video, rows.in_gaps
-        ));
-    }
+fn say(common: &Common, report: &AlignReport) {
+    let (tie, rows) = (&report.certificate, &report.certificate.rows);
+    let plus_minus = |sd: Option<f64>, digits: usize| sd.map_or(String::new(), |sd| format!(" ± {sd:.digits$}"));
+    common.say(&format!(
+        "offset {}{} s, drift {}{} ppm ({:?}); {} frames read, {} not",
+        fixed(tie.offset_s, 4),
+        plus_minus(tie.offset_sd_s, 4),
+        fixed(tie.drift_ppm, 1),
+        plus_minus(tie.drift_sd_ppm, 1),
+        tie.method,
+        tie.frames_read,
+        tie.frames_abstained
+    ));
+    common.say(&format!(
+        "{} of {} rows labelled; {} with a fault of the sensor",
+        rows.rows_labelled, report.rows, report.rows_with_faults
+    ));
+    common.say(&format!(
+        "without: {} before the video, {} after it, {} in gaps",
+        rows.before_the_video, rows.after_the_video, rows.in_gaps
+    ));
 }

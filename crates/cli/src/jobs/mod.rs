@@ -48,9 +48,9 @@ pub(super) struct ResultArgs {
 }
 
 impl ResultArgs {
-    /// What [`Command::given`] answers; `said` are the options as they were written.
-    pub(super) fn given<'a>(&'a self, said: &'a Said) -> Request<'a> {
-        (&self.job, said, self.out.as_ref())
+    /// What is asked of the job `name`, which counts `unit`; `said` are the options as they were written.
+    pub(super) fn request<'a>(&'a self, name: &'static str, unit: &'static str, said: &'a Said) -> Request<'a> {
+        Request { name, unit, job: &self.job, said, result: self.out.clone() }
     }
 
     /// Where results go; none where it was not said.
@@ -64,8 +64,18 @@ pub(super) fn needed<T>(outputs: Option<T>) -> anyhow::Result<T> {
     outputs.context("--out is needed: where the results go")
 }
 
-/// What every job takes, the options as they were written, and --out.
-pub(super) type Request<'a> = (&'a JobArgs, &'a Said, Option<&'a PathBuf>);
+/// What a command asks of its job.
+pub(super) struct Request<'a> {
+    /// The job's name, as plans give it.
+    pub(super) name: &'static str,
+    /// What is counted while it runs: `frames`.
+    pub(super) unit: &'static str,
+    pub(super) job: &'a JobArgs,
+    /// The options as they were written.
+    pub(super) said: &'a Said,
+    /// Where to look if there is no picture.
+    pub(super) result: Option<PathBuf>,
+}
 
 /// What a command would do and leave out.
 pub(super) struct Plan {
@@ -80,58 +90,37 @@ impl From<Vec<Step>> for Plan {
     }
 }
 
-/// A command that runs one job.
-pub(super) trait Command {
-    /// The figures of its report.
-    type Figures: Serialize;
-
-    /// The job's name, as plans give it.
-    const NAME: &'static str;
-
-    /// What is counted while it runs: `frames`.
-    const UNIT: &'static str = "steps";
-
-    fn given(&self) -> Request<'_>;
-
-    /// The plan, for which nothing need be said of where results go.
-    fn plan(&self) -> anyhow::Result<Plan>;
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<Report<Self::Figures>>;
-
-    /// The figures in words.
-    fn say(&self, common: &Common, report: &Report<Self::Figures>);
-
-    /// Where to look if there is no picture.
-    fn result(&self) -> Option<PathBuf> {
-        self.given().2.cloned()
-    }
-}
-
-/// Plans or runs a job, and prints its report.
-pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
-    let (JobArgs { plan, common }, said, _) = command.given();
+/// Plans a job, for which nothing need be said of where results go, or runs it, and prints its report; `say` says the
+/// figures in words.
+pub(super) fn run<P: Into<Plan>, F: Serialize>(
+    request: &Request<'_>,
+    plan: impl FnOnce() -> anyhow::Result<P>,
+    run: impl FnOnce(&Watch<'_>) -> anyhow::Result<Report<F>>,
+    say: impl FnOnce(&Common, &Report<F>),
+) -> anyhow::Result<Outcome> {
+    let common = &request.job.common;
     let stop = common.start()?;
-    if *plan {
-        return show(common, C::NAME, &command.plan()?);
+    if request.job.plan {
+        return show(common, request.name, &plan()?.into());
     }
-    let bar = common.progress(0, C::UNIT);
+    let bar = common.progress(0, request.unit);
     let tick = |done: u64, all: Option<u64>| {
         bar.set_length(all.unwrap_or(done));
         bar.set_position(done);
     };
-    let report = command.run(&Watch { said, stop: &stop, tick: &tick });
+    let report = run(&Watch { said: request.said, stop: &stop, tick: &tick });
     bar.finish_and_clear();
     let report = report?;
     name_failures(&report.failed);
     common.warn(&report.warnings);
     common.note(&report.notes);
     common.print_json(&report)?;
-    command.say(common, &report);
+    say(common, &report);
     if common.verbose {
         common.say_stages(&report.stages);
         common.say_left_out(&report.left_out);
     }
-    let look = report.pictures.first().cloned().or_else(|| command.result());
+    let look = report.pictures.first().or(request.result.as_ref());
     let look = look.map_or(String::new(), |look| format!("; look at {}", look.display()));
     common.say(&format!("{:.2} s{look}", report.wall_s));
     Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::job::{Given, Watch};
-use lunula::nailvideo::{Inputs, NailVideoFigures, NailVideoOptions, NailVideoReport, Outputs, mask_of, plan, run};
+use lunula::job::Given;
+use lunula::nailvideo::{self, Inputs, NailVideoOptions, NailVideoReport, Outputs, mask_of};
 
-use crate::Common;
-use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
+use crate::{Common, Outcome};
 
 /// Read virtual photodiodes off a video of a nail: follow the nail, average places of it, find presses
 ///
@@ -57,10 +57,6 @@ impl NailVideoArgs {
         Ok(Inputs { video: self.video.clone(), outline, positions: self.positions.clone() })
     }
 
-    fn options(&self) -> NailVideoOptions {
-        NailVideoOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
-    }
-
     fn outputs(&self) -> Option<Outputs> {
         Some(Outputs {
             folder: self.results.out.clone()?,
@@ -72,49 +68,40 @@ impl NailVideoArgs {
     }
 }
 
-impl Command for NailVideoArgs {
-    type Figures = NailVideoFigures;
+pub(crate) fn run(args: &NailVideoArgs) -> anyhow::Result<Outcome> {
+    let NailVideoArgs { given, results, .. } = args;
+    let options = NailVideoOptions { threads: results.job.common.threads(), ..given.options.clone() };
+    jobs::run(
+        &results.request("nailvideo", "frames", &given.said),
+        || Ok(nailvideo::plan(&args.inputs()?, &options, args.outputs().as_ref())?),
+        |watch| Ok(nailvideo::run(&args.inputs()?, &options, &needed(args.outputs())?, watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "nailvideo";
-
-    const UNIT: &'static str = "frames";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
+fn say(common: &Common, report: &NailVideoReport) {
+    let known = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+    let (nail, frames) = (&report.nail, &report.frames);
+    common.say(&format!(
+        "nail {:.0} x {:.0} px ({}), followed in {} of {} frames to ± {} px",
+        nail.width_px,
+        nail.length_px,
+        nail.outline,
+        frames.followed,
+        frames.all,
+        known(report.se_px, 2)
+    ));
+    for (why, count) in &frames.lost {
+        common.say(&format!("{why}: {count} frames"));
     }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.inputs()?, &self.options(), self.outputs().as_ref())?.into())
+    for one in &report.photodiodes {
+        let absent: Vec<String> = one.absent.iter().map(|(why, count)| format!("{count} {why}")).collect();
+        let absent = if absent.is_empty() { String::new() } else { format!("; {}", absent.join(", ")) };
+        common.say(&format!("{:<6} {:>7} frames, noise {}{absent}", one.name, one.frames, known(one.noise_sd, 3)));
     }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<NailVideoReport> {
-        Ok(run(&self.inputs()?, &self.options(), &needed(self.outputs())?, watch)?)
+    common.say(&format!("{} presses ({})", report.presses, report.presses_are_for));
+    for (status, count) in &report.courses {
+        common.say(&format!("{count:>5} courses {status}"));
     }
-
-    fn say(&self, common: &Common, report: &NailVideoReport) {
-        let known = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
-        let (nail, frames) = (&report.nail, &report.frames);
-        common.say(&format!(
-            "nail {:.0} x {:.0} px ({}), followed in {} of {} frames to ± {} px",
-            nail.width_px,
-            nail.length_px,
-            nail.outline,
-            frames.followed,
-            frames.all,
-            known(report.se_px, 2)
-        ));
-        for (why, count) in &frames.lost {
-            common.say(&format!("{why}: {count} frames"));
-        }
-        for one in &report.photodiodes {
-            let absent: Vec<String> = one.absent.iter().map(|(why, count)| format!("{count} {why}")).collect();
-            let absent = if absent.is_empty() { String::new() } else { format!("; {}", absent.join(", ")) };
-            common.say(&format!("{:<6} {:>7} frames, noise {}{absent}", one.name, one.frames, known(one.noise_sd, 3)));
-        }
-        common.say(&format!("{} presses ({})", report.presses, report.presses_are_for));
-        for (status, count) in &report.courses {
-            common.say(&format!("{count:>5} courses {status}"));
-        }
-        common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
-    }
+    common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
 }

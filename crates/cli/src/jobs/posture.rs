@@ -1,13 +1,13 @@
 //! `lunula posture`: video to joint angles.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use lunula::job::{Given, Watch};
-use lunula::posture::{Layout, Outputs, PostureFigures, PostureOptions, PostureReport, plan, run, suggest};
+use lunula::job::Given;
+use lunula::posture::{self, Layout, Outputs, PostureOptions, PostureReport, suggest};
 
-use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
 use crate::{Common, Outcome, print_line};
 
 /// Measure joint angles in a video of a finger with coloured markers, each frame with its time and standard error
@@ -49,32 +49,10 @@ pub(crate) struct PostureArgs {
     results: ResultArgs,
 }
 
-/// `--suggest`, or the job.
-pub(crate) fn run_or_suggest(args: &PostureArgs) -> anyhow::Result<Outcome> {
-    if !args.suggest {
-        return crate::jobs::run(args);
-    }
-    let common = &args.results.job.common;
-    common.start()?;
-    let suggested = suggest(&args.video, common.threads())?;
-    if common.json {
-        common.print_json(
-            &serde_json::json!({ "job": "posture --suggest", "markers_toml": suggested, "warnings": [] }),
-        )?;
-    } else {
-        print_line(suggested.trim_end());
-    }
-    Ok(Outcome::Done)
-}
-
 impl PostureArgs {
     fn layout(&self) -> anyhow::Result<Layout> {
         let markers = self.markers.as_ref().context("--markers is needed")?;
         Ok(Layout::read(markers)?.wanting(&self.given.options.joints)?)
-    }
-
-    fn options(&self) -> PostureOptions {
-        PostureOptions { threads: self.results.job.common.threads(), ..self.given.options.clone() }
     }
 
     fn outputs(&self) -> Option<Outputs> {
@@ -88,55 +66,64 @@ impl PostureArgs {
     }
 }
 
-impl Command for PostureArgs {
-    type Figures = PostureFigures;
-
-    const UNIT: &'static str = "frames";
-
-    const NAME: &'static str = "posture";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
+/// `--suggest`, or the job.
+pub(crate) fn run(args: &PostureArgs) -> anyhow::Result<Outcome> {
+    let PostureArgs { video, given, results, .. } = args;
+    let common = &results.job.common;
+    if args.suggest {
+        return print_suggested(video, common);
     }
+    let options = PostureOptions { threads: common.threads(), ..given.options.clone() };
+    jobs::run(
+        &results.request("posture", "frames", &given.said),
+        || Ok(posture::plan(video, &args.layout()?, &options, args.outputs().as_ref())?),
+        |watch| Ok(posture::run(video, &args.layout()?, &options, &needed(args.outputs())?, watch)?),
+        say,
+    )
+}
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.video, &self.layout()?, &self.options(), self.outputs().as_ref())?.into())
+fn print_suggested(video: &Path, common: &Common) -> anyhow::Result<Outcome> {
+    common.start()?;
+    let suggested = suggest(video, common.threads())?;
+    if common.json {
+        common.print_json(
+            &serde_json::json!({ "job": "posture --suggest", "markers_toml": suggested, "warnings": [] }),
+        )?;
+    } else {
+        print_line(suggested.trim_end());
     }
+    Ok(Outcome::Done)
+}
 
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
-        Ok(run(&self.video, &self.layout()?, &self.options(), &needed(self.outputs())?, watch)?)
+fn say(common: &Common, report: &PostureReport) {
+    for joint in &report.joints {
+        let known = |value: Option<f64>, digits| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+        common.say(&format!(
+            "{:<8} {:>7} of {} frames, {} to {} degrees, standard error {}",
+            joint.joint,
+            joint.frames,
+            report.frames.all,
+            known(joint.min_deg, 1),
+            known(joint.max_deg, 1),
+            known(joint.sd_deg, 3)
+        ));
     }
-
-    fn say(&self, common: &Common, report: &PostureReport) {
-        for joint in &report.joints {
-            let known = |value: Option<f64>, digits| value.map_or("-".into(), |v| format!("{v:.digits$}"));
-            common.say(&format!(
-                "{:<8} {:>7} of {} frames, {} to {} degrees, standard error {}",
-                joint.joint,
-                joint.frames,
-                report.frames.all,
-                known(joint.min_deg, 1),
-                known(joint.max_deg, 1),
-                known(joint.sd_deg, 3)
-            ));
-        }
-        for marker in report.markers.iter().filter(|m| m.seen < report.frames.all) {
-            common.say(&format!(
-                "{:<24} lost in {} frames{}",
-                marker.marker,
-                report.frames.all - marker.seen,
-                marker.reasons()
-            ));
-        }
-        if let Some(clock) = &report.clock {
-            let tie = clock.tie.as_ref().map_or("it ties nothing".to_owned(), |tie| {
-                format!(
-                    "at the first frame {:.4} ± {:.4} s, drift {:.0} ± {:.0} ppm",
-                    tie.offset_s, tie.offset_sd_s, tie.drift_ppm, tie.drift_sd_ppm
-                )
-            });
-            common.say(&format!("clock    read in {} of {} frames, {tie}", clock.frames_read, report.frames.all));
-        }
-        common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
+    for marker in report.markers.iter().filter(|m| m.seen < report.frames.all) {
+        common.say(&format!(
+            "{:<24} lost in {} frames{}",
+            marker.marker,
+            report.frames.all - marker.seen,
+            marker.reasons()
+        ));
     }
+    if let Some(clock) = &report.clock {
+        let tie = clock.tie.as_ref().map_or("it ties nothing".to_owned(), |tie| {
+            format!(
+                "at the first frame {:.4} ± {:.4} s, drift {:.0} ± {:.0} ppm",
+                tie.offset_s, tie.offset_sd_s, tie.drift_ppm, tie.drift_sd_ppm
+            )
+        });
+        common.say(&format!("clock    read in {} of {} frames, {tie}", clock.frames_read, report.frames.all));
+    }
+    common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
 }

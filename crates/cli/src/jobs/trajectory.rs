@@ -1,13 +1,12 @@
 //! `lunula trajectory`: tables of forces or angles for a prompter to play.
 
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Watch};
+use lunula::job::Given;
 use lunula::predictor::trajectory::{
-    BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryFigures,
-    TrajectoryReport, plan, run as run_trajectory,
+    self, BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryReport,
 };
 
-use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
 use crate::{Common, Outcome};
 
 /// Write calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly
@@ -45,45 +44,34 @@ struct KindArgs<K: KindOptions> {
 
 pub(crate) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
     match &args.kind {
-        KindArg::Force(args) => jobs::run(args),
-        KindArg::Posture(args) => jobs::run(args),
-        KindArg::Random(args) => jobs::run(args),
+        KindArg::Force(args) => write(args),
+        KindArg::Posture(args) => write(args),
+        KindArg::Random(args) => write(args),
     }
 }
 
-impl<K: KindOptions> Command for KindArgs<K> {
-    type Figures = TrajectoryFigures;
+fn write<K: KindOptions>(KindArgs { given, results }: &KindArgs<K>) -> anyhow::Result<Outcome> {
+    jobs::run(
+        &results.request("trajectory", "steps", &given.said),
+        || Ok(trajectory::plan(&given.options.options(), results.outputs().as_ref())?),
+        |watch| Ok(trajectory::run(&given.options.options(), &needed(results.outputs())?, watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "trajectory";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
+fn say(common: &Common, report: &TrajectoryReport) {
+    common
+        .say(&format!("{} rows from 0 to {:.3} s, every {} s", report.rows, report.span_s, report.trajectory.every_s));
+    if let Some(force) = &report.force {
+        say_force(common, report, force);
     }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(&self.given.options.options(), self.results.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
-        Ok(run_trajectory(&self.given.options.options(), &needed(self.results.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &TrajectoryReport) {
+    if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
         common.say(&format!(
-            "{} rows from 0 to {:.3} s, every {} s",
-            report.rows, report.span_s, report.trajectory.every_s
+            "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a \
+             second: a \
+             sensor that lags by {} s is {behind_deg:.1} degrees behind",
+            report.trajectory.tau_s
         ));
-        if let Some(force) = &report.force {
-            say_force(common, report, force);
-        }
-        if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
-            common.say(&format!(
-                "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a \
-                 second: a \
-                 sensor that lags by {} s is {behind_deg:.1} degrees behind",
-                report.trajectory.tau_s
-            ));
-        }
     }
 }
 

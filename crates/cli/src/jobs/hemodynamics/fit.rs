@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::hemodynamics::{FitFigures, FitInputs, FitOptions, FitReport, fit, fit_plan};
-use lunula::job::{Given, Watch};
+use lunula::hemodynamics::{FitInputs, FitOptions, FitReport, fit, fit_plan};
+use lunula::job::Given;
 use lunula::words::fixed;
 
-use crate::Common;
-use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
+use crate::{Common, Outcome};
 
 const EXAMPLES: &str = "Examples:
 Stiffness and damping of all walls, and the photodiodes:
@@ -66,80 +66,64 @@ pub(crate) struct FitArgs {
     results: ResultArgs,
 }
 
-impl FitArgs {
-    fn inputs(&self) -> FitInputs {
-        FitInputs {
-            recordings: self.recordings.clone(),
-            subjects: self.subject.clone(),
-            names: Vec::new(),
-            params: self.params.clone(),
-        }
-    }
+pub(crate) fn run(args: &FitArgs) -> anyhow::Result<Outcome> {
+    let FitArgs { given, results, .. } = args;
+    let inputs = FitInputs {
+        recordings: args.recordings.clone(),
+        subjects: args.subject.clone(),
+        names: Vec::new(),
+        params: args.params.clone(),
+    };
+    jobs::run(
+        &results.request("fit", "steps", &given.said),
+        || Ok(fit_plan(&inputs, &given.options, results.outputs().as_ref())?),
+        |watch| Ok(fit(&inputs, &given.options, &needed(results.outputs())?, watch)?),
+        say,
+    )
 }
 
-impl Command for FitArgs {
-    type Figures = FitFigures;
-
-    const NAME: &'static str = "fit";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(fit_plan(&self.inputs(), &self.given.options, self.results.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<FitReport> {
-        Ok(fit(&self.inputs(), &self.given.options, &needed(self.results.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &FitReport) {
-        let r2 = report.r2.map_or(String::new(), |r2| format!(", R2 {r2:.5}"));
-        common.say(&format!(
-            "{} voltages, residuals {:.3e} V{r2}; {}",
-            report.values, report.residual_sd_v, report.stopped
-        ));
-        for group in &report.free {
-            let error = |k: usize| match (&group.standard_errors, group.at_bound) {
-                (Some(errors), _) => format!("+- {:.2e}", errors[k]),
-                (None, Some(bound)) => format!("at its {} bound", bound.word()),
-                (None, None) => "not determined".to_owned(),
+fn say(common: &Common, report: &FitReport) {
+    let r2 = report.r2.map_or(String::new(), |r2| format!(", R2 {r2:.5}"));
+    common
+        .say(&format!("{} voltages, residuals {:.3e} V{r2}; {}", report.values, report.residual_sd_v, report.stopped));
+    for group in &report.free {
+        let error = |k: usize| match (&group.standard_errors, group.at_bound) {
+            (Some(errors), _) => format!("+- {:.2e}", errors[k]),
+            (None, Some(bound)) => format!("at its {} bound", bound.word()),
+            (None, None) => "not determined".to_owned(),
+        };
+        let end = |k: usize, which: usize, open: &str| {
+            group.interval[which].as_ref().map_or(open.to_owned(), |values| format!("{:.3e}", values[k]))
+        };
+        for (k, name) in group.symbols.iter().map(ToString::to_string).enumerate() {
+            let interval = match (&group.interval[0], &group.interval[1]) {
+                (None, None) => String::new(),
+                _ => format!("two standard errors {} to {}; ", end(k, 0, "its bound"), end(k, 1, "its bound")),
             };
-            let end = |k: usize, which: usize, open: &str| {
-                group.interval[which].as_ref().map_or(open.to_owned(), |values| format!("{:.3e}", values[k]))
-            };
-            for (k, name) in group.symbols.iter().map(ToString::to_string).enumerate() {
-                let interval = match (&group.interval[0], &group.interval[1]) {
-                    (None, None) => String::new(),
-                    _ => format!("two standard errors {} to {}; ", end(k, 0, "its bound"), end(k, 1, "its bound")),
-                };
-                common.say(&format!(
-                    "  {name:<20} {:>12.5e} {:<20} ({interval}start {:.3e})",
-                    group.values[k],
-                    error(k),
-                    group.start[k]
-                ));
-            }
-        }
-        for one in &report.photodiodes {
-            let plus =
-                |error: Option<f64>| error.map_or("not determined".to_owned(), |error| format!("+- {error:.4} V"));
             common.say(&format!(
-                "  unit {}{}: offset {} V {}, scaling {:.5} V {}; {}",
-                one.unit,
-                if one.subjects.is_empty() { String::new() } else { format!(" of {}", one.subjects.join(", ")) },
-                fixed(one.offset_v, 5),
-                plus(one.offset_standard_error_v),
-                one.scaling_v,
-                plus(one.scaling_standard_error_v),
-                one.recordings.join(", ")
+                "  {name:<20} {:>12.5e} {:<20} ({interval}start {:.3e})",
+                group.values[k],
+                error(k),
+                group.start[k]
             ));
         }
-        for one in &report.recordings {
-            let of = |((name, noise_v), noise): ((&String, &f64), &String)| format!("{name} {noise_v:.2e} V, {noise}");
-            let noises: Vec<String> = one.photodiodes.iter().zip(&one.noise_v).zip(&one.noise).map(of).collect();
-            common.say(&format!("  noise in {}: {}", one.file.display(), noises.join("; ")));
-        }
+    }
+    for one in &report.photodiodes {
+        let plus = |error: Option<f64>| error.map_or("not determined".to_owned(), |error| format!("+- {error:.4} V"));
+        common.say(&format!(
+            "  unit {}{}: offset {} V {}, scaling {:.5} V {}; {}",
+            one.unit,
+            if one.subjects.is_empty() { String::new() } else { format!(" of {}", one.subjects.join(", ")) },
+            fixed(one.offset_v, 5),
+            plus(one.offset_standard_error_v),
+            one.scaling_v,
+            plus(one.scaling_standard_error_v),
+            one.recordings.join(", ")
+        ));
+    }
+    for one in &report.recordings {
+        let of = |((name, noise_v), noise): ((&String, &f64), &String)| format!("{name} {noise_v:.2e} V, {noise}");
+        let noises: Vec<String> = one.photodiodes.iter().zip(&one.noise_v).zip(&one.noise).map(of).collect();
+        common.say(&format!("  noise in {}: {}", one.file.display(), noises.join("; ")));
     }
 }

@@ -4,12 +4,12 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, FromArgMatches};
 use lunula::hemodynamics::{
-    CurveFigures, CurveOptions, CurveRange, CurveReport, SimulateFigures, SimulateInputs, SimulateOptions,
-    SimulateReport, curve, curve_plan, simulate, simulate_plan,
+    CurveOptions, CurveRange, CurveReport, SimulateInputs, SimulateOptions, SimulateReport, curve, curve_plan,
+    simulate, simulate_plan,
 };
-use lunula::job::{Given, Watch};
+use lunula::job::Given;
 
-use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
 use crate::{Common, Outcome, print_line};
 
 const EXAMPLES: &str = "Examples:
@@ -112,89 +112,48 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<Outcome> {
         print_line(model.parameters(args.inputs.params.as_deref())?.to_toml().trim_end());
         return Ok(Outcome::Done);
     }
+    let SimulateArgs { inputs, results, .. } = args;
     match &args.way {
-        Way::OverTime(given) => jobs::run(&OverTime { args, given }),
-        Way::Static(given) => jobs::run(&Static { args, given }),
+        Way::OverTime(given) => jobs::run(
+            &results.request("simulate", "steps", &given.said),
+            || Ok(simulate_plan(inputs, &given.options, results.outputs().as_ref())?),
+            |watch| Ok(simulate(inputs, &given.options, &needed(results.outputs())?, watch)?),
+            say_over_time,
+        ),
+        Way::Static(given) => jobs::run(
+            &results.request("simulate --static", "steps", &given.said),
+            || Ok(curve_plan(inputs.params.as_deref(), &given.options, results.outputs().as_ref())?),
+            |watch| Ok(curve(inputs.params.as_deref(), &given.options, &needed(results.outputs())?, watch)?),
+            say_static,
+        ),
     }
 }
 
-struct OverTime<'a> {
-    args: &'a SimulateArgs,
-    given: &'a Given<SimulateOptions>,
+fn say_over_time(common: &Common, report: &SimulateReport) {
+    let last_s =
+        report.last_s.map_or("no rows".to_owned(), |last_s| format!("{} rows from 0 to {last_s} s", report.rows));
+    common.say(&format!("{last_s}; the error of every lumen is at most {:e} of its nominal diameter", report.rtol));
+    let work = &report.work;
+    common.say(&format!(
+        "{} steps ({} more rejected), {} evaluations, {} factorizations; {}",
+        work.steps, work.rejected, work.evaluations, work.factorizations, report.stopped
+    ));
 }
 
-impl Command for OverTime<'_> {
-    type Figures = SimulateFigures;
-
-    const NAME: &'static str = "simulate";
-
-    fn given(&self) -> Request<'_> {
-        self.args.results.given(&self.given.said)
+fn say_static(common: &Common, report: &CurveReport) {
+    common.say(&format!(
+        "{} loads: {} with one equilibrium, {} with several, {} with none that is open",
+        report.loads, report.with_one, report.with_several, report.with_none
+    ));
+    for fold in &report.folds {
+        common.say(&format!("{} at {:.6} Pa", fold.what, fold.load_pa));
     }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(simulate_plan(&self.args.inputs, &self.given.options, self.args.results.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
-        Ok(simulate(&self.args.inputs, &self.given.options, &needed(self.args.results.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &SimulateReport) {
-        let last_s =
-            report.last_s.map_or("no rows".to_owned(), |last_s| format!("{} rows from 0 to {last_s} s", report.rows));
-        common.say(&format!("{last_s}; the error of every lumen is at most {:e} of its nominal diameter", report.rtol));
-        let work = &report.work;
+    for [from, to] in &report.bistable_pa {
         common.say(&format!(
-            "{} steps ({} more rejected), {} evaluations, {} factorizations; {}",
-            work.steps, work.rejected, work.evaluations, work.factorizations, report.stopped
+            "several stable states from {from:.6} to {to:.6} Pa: which one is reached depends on the path"
         ));
     }
-}
-
-struct Static<'a> {
-    args: &'a SimulateArgs,
-    given: &'a Given<CurveOptions>,
-}
-
-impl Command for Static<'_> {
-    type Figures = CurveFigures;
-
-    const NAME: &'static str = "simulate --static";
-
-    fn given(&self) -> Request<'_> {
-        self.args.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(curve_plan(self.args.inputs.params.as_deref(), &self.given.options, self.args.results.outputs().as_ref())?
-            .into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
-        Ok(curve(
-            self.args.inputs.params.as_deref(),
-            &self.given.options,
-            &needed(self.args.results.outputs())?,
-            watch,
-        )?)
-    }
-
-    fn say(&self, common: &Common, report: &CurveReport) {
-        common.say(&format!(
-            "{} loads: {} with one equilibrium, {} with several, {} with none that is open",
-            report.loads, report.with_one, report.with_several, report.with_none
-        ));
-        for fold in &report.folds {
-            common.say(&format!("{} at {:.6} Pa", fold.what, fold.load_pa));
-        }
-        for [from, to] in &report.bistable_pa {
-            common.say(&format!(
-                "several stable states from {from:.6} to {to:.6} Pa: which one is reached depends on the path"
-            ));
-        }
-        for [from, to] in &report.closed_pa {
-            common.say(&format!("no equilibrium with open vessels from {from:.6} to {to:.6} Pa"));
-        }
+    for [from, to] in &report.closed_pa {
+        common.say(&format!("no equilibrium with open vessels from {from:.6} to {to:.6} Pa"));
     }
 }

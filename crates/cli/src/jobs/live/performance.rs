@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Watch};
+use lunula::job::Given;
 use lunula::live::performance::{
-    Comparison, MethodFigures, PerformanceFigures, PerformanceOptions, PerformanceReport, Statement, plan, run,
+    self, Comparison, MethodFigures, PerformanceOptions, PerformanceReport, Statement, TrialMean,
 };
 
-use crate::Common;
-use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
+use crate::{Common, Outcome};
 
 const EXAMPLES: &str = "Examples:
 The thesis' course (appendix C): 1.42 m at 25 mm/s, 27 moves:
@@ -41,45 +41,31 @@ pub(crate) struct PerformanceArgs {
     results: ResultArgs,
 }
 
-impl Command for PerformanceArgs {
-    type Figures = PerformanceFigures;
+pub(crate) fn run(PerformanceArgs { trials, given, results }: &PerformanceArgs) -> anyhow::Result<Outcome> {
+    let (name, options) = (trials.display().to_string(), &given.options);
+    jobs::run(
+        &results.request("performance", "steps", &given.said),
+        || Ok(performance::plan(results.outputs().as_ref())),
+        |watch| Ok(performance::run(trials, &name, options, &needed(results.outputs())?, watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "performance";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(plan(self.results.outputs().as_ref()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PerformanceReport> {
-        Ok(run(
-            &self.trials,
-            &self.trials.display().to_string(),
-            &self.given.options,
-            &needed(self.results.outputs())?,
-            watch,
-        )?)
-    }
-
-    fn say(&self, common: &Common, report: &PerformanceReport) {
-        common.say(&format!(
-            "{} trials of {} operators; driving alone takes {:.1} s",
-            report.rows,
-            report.operators.len(),
-            report.shortest_s
-        ));
-        report.methods.iter().for_each(|method| say_method(common, method));
-        report.comparisons.iter().for_each(|one| say_comparison(common, one));
-        common.say(&report.level);
-    }
+fn say(common: &Common, report: &PerformanceReport) {
+    common.say(&format!(
+        "{} trials of {} operators; driving alone takes {:.1} s",
+        report.rows,
+        report.operators.len(),
+        report.shortest_s
+    ));
+    report.methods.iter().for_each(|method| say_method(common, method));
+    report.comparisons.iter().for_each(|one| say_comparison(common, one));
+    common.say(&report.level);
 }
 
 fn say_method(common: &Common, method: &MethodFigures) {
     let (Some(first), Some(last)) = (method.trials.first(), method.trials.last()) else { return };
-    let time = |of: &lunula::live::performance::TrialMean| {
+    let time = |of: &TrialMean| {
         let sd = of.over_operators.sd.map_or(String::new(), |sd| format!(" ± {sd:.2}"));
         format!("{:.2}{sd} s in trial {} (n {})", of.over_operators.mean, of.trial, of.over_operators.n)
     };

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 use clap::Args;
-use lunula::job::{Given, Watch};
-use lunula::live::skill::{FingerSpread, SkillFigures, SkillInputs, SkillOptions, SkillReport, plan, run};
+use lunula::job::Given;
+use lunula::live::skill::{self, FingerSpread, SkillInputs, SkillOptions, SkillReport};
 use lunula::predictor::DataFile;
 
-use crate::Common;
-use crate::jobs::{Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
+use crate::{Common, Outcome};
 
 const EXAMPLES: &str = "Examples:
 Trials of one person, a recording each, the first of them the reference:
@@ -63,42 +63,33 @@ impl SkillArgs {
     }
 }
 
-impl Command for SkillArgs {
-    type Figures = SkillFigures;
+pub(crate) fn run(args: &SkillArgs) -> anyhow::Result<Outcome> {
+    let SkillArgs { given, results, .. } = args;
+    jobs::run(
+        &results.request("skill", "recordings", &given.said),
+        || {
+            let SkillInputs { recordings, reference } = args.inputs()?;
+            Ok(skill::plan(recordings.len(), reference.is_some(), &given.options, results.outputs().as_ref())?)
+        },
+        |watch| Ok(skill::run(&args.inputs()?, &given.options, &needed(results.outputs())?, watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "skill";
-
-    const UNIT: &'static str = "recordings";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let inputs = self.inputs()?;
-        let reference = inputs.reference.is_some();
-        Ok(plan(inputs.recordings.len(), reference, &self.given.options, self.results.outputs().as_ref())?.into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SkillReport> {
-        Ok(run(&self.inputs()?, &self.given.options, &needed(self.results.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &SkillReport) {
-        for person in &report.people {
-            let whose = person.subject.as_ref().map_or(String::new(), |subject| format!("{subject}: "));
-            common.say(&format!("{whose}{}, mean ± SD over trials", trials(person.trials)));
-            person.fingers.iter().for_each(|finger| say_finger(common, finger));
-            let first = person.first.iter().map(|(finger, trials)| format!("{finger} in {trials}"));
-            let first: Vec<String> = first.collect();
-            if person.fingers.len() > 1 && !first.is_empty() {
-                common.say(&format!("  touched first: {}", first.join(", ")));
-            }
+fn say(common: &Common, report: &SkillReport) {
+    for person in &report.people {
+        let whose = person.subject.as_ref().map_or(String::new(), |subject| format!("{subject}: "));
+        common.say(&format!("{whose}{}, mean ± SD over trials", trials(person.trials)));
+        person.fingers.iter().for_each(|finger| say_finger(common, finger));
+        let first = person.first.iter().map(|(finger, trials)| format!("{finger} in {trials}"));
+        let first: Vec<String> = first.collect();
+        if person.fingers.len() > 1 && !first.is_empty() {
+            common.say(&format!("  touched first: {}", first.join(", ")));
         }
-        if report.over_people.iter().any(|finger| finger.over.values().flatten().any(|over| over.n > 1)) {
-            common.say("mean ± SD over people");
-            report.over_people.iter().for_each(|finger| say_finger(common, finger));
-        }
+    }
+    if report.over_people.iter().any(|finger| finger.over.values().flatten().any(|over| over.n > 1)) {
+        common.say("mean ± SD over people");
+        report.over_people.iter().for_each(|finger| say_finger(common, finger));
     }
 }
 

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Watch};
+use lunula::job::Given;
 use lunula::live::{
-    ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, SwitchInputs, TuneFigures, TuneOptions,
-    TuneReport, evaluate_plan, evaluate_switch, tune_plan, tune_switch,
+    ContactOptions, Evaluation, SwitchInputs, TuneOptions, TuneReport, evaluate_plan, evaluate_switch, tune_plan,
+    tune_switch,
 };
 
-use crate::jobs::{self, Command, Plan, Request, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs, needed};
 use crate::{Common, Outcome};
 
 /// Choose and judge the thresholds of the virtual switch (6.1), for `lunula live --switch`
@@ -60,65 +60,39 @@ struct EvaluateArgs {
 
 pub(crate) fn run(args: &SwitchArgs) -> anyhow::Result<Outcome> {
     match &args.what {
-        What::Tune(args) => jobs::run(&**args),
-        What::Evaluate(args) => jobs::run(&**args),
+        What::Tune(args) => tune(args),
+        What::Evaluate(args) => evaluate(args),
     }
 }
 
-impl Command for TuneArgs {
-    type Figures = TuneFigures;
-
-    const NAME: &'static str = "switch tune";
-
-    const UNIT: &'static str = "recordings";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(tune_plan(self.inputs.recordings.len(), self.results.outputs().as_ref()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
-        Ok(tune_switch(&self.inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &TuneReport) {
-        let switch = &report.switch;
-        let unit = if switch.column.is_none() { " N" } else { "" };
-        common.say(&format!(
-            "on from {}{unit}, off below {}{unit}, held {} s and {} s; of {} combinations",
-            switch.on_n, switch.off_n, switch.hold_on_s, switch.hold_off_s, report.tried
-        ));
-        say_evaluation(common, "where it was chosen", &report.chosen);
-        if let Some(held_out) = &report.held_out {
-            say_evaluation(common, "held out", held_out);
-        }
-    }
+fn tune(TuneArgs { inputs, given, results }: &TuneArgs) -> anyhow::Result<Outcome> {
+    jobs::run(
+        &results.request("switch tune", "recordings", &given.said),
+        || Ok(tune_plan(inputs.recordings.len(), results.outputs().as_ref())),
+        |watch| Ok(tune_switch(inputs, &given.options, &needed(results.outputs())?, watch)?),
+        say_tuned,
+    )
 }
 
-impl Command for EvaluateArgs {
-    type Figures = EvaluateSwitchFigures;
+fn evaluate(EvaluateArgs { switch, inputs, given, results }: &EvaluateArgs) -> anyhow::Result<Outcome> {
+    jobs::run(
+        &results.request("switch evaluate", "recordings", &given.said),
+        || Ok(evaluate_plan(inputs.recordings.len(), results.outputs().as_ref())),
+        |watch| Ok(evaluate_switch(switch, inputs, &given.options, &needed(results.outputs())?, watch)?),
+        |common, report| say_evaluation(common, "on these recordings", &report.all),
+    )
+}
 
-    const NAME: &'static str = "switch evaluate";
-
-    const UNIT: &'static str = "recordings";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(evaluate_plan(self.inputs.recordings.len(), self.results.outputs().as_ref()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
-        Ok(evaluate_switch(&self.switch, &self.inputs, &self.given.options, &needed(self.results.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &EvaluateSwitchReport) {
-        say_evaluation(common, "on these recordings", &report.all);
+fn say_tuned(common: &Common, report: &TuneReport) {
+    let switch = &report.switch;
+    let unit = if switch.column.is_none() { " N" } else { "" };
+    common.say(&format!(
+        "on from {}{unit}, off below {}{unit}, held {} s and {} s; of {} combinations",
+        switch.on_n, switch.off_n, switch.hold_on_s, switch.hold_off_s, report.tried
+    ));
+    say_evaluation(common, "where it was chosen", &report.chosen);
+    if let Some(held_out) = &report.held_out {
+        say_evaluation(common, "held out", held_out);
     }
 }
 

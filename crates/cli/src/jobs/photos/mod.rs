@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::job::{Given, Watch};
+use lunula::job::Given;
 use lunula::photo::outline::SavedOutlines;
 use lunula::photo::{
-    MapsJob, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosFigures, PhotosOptions, PhotosReport, Results, merge,
-    merge_plan, plan, run,
+    self, MapsJob, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosOptions, PhotosReport, Results, merge,
+    merge_plan, plan,
 };
 
-use crate::jobs::{self, Command, JobArgs, Plan, Request, needed};
+use crate::jobs::{self, JobArgs, Plan, Request, needed};
 use crate::{Common, Outcome};
 
 /// Turn nail photographs into coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
@@ -100,11 +100,41 @@ impl PhotosArgs {
 }
 
 /// `merge`, or the job.
-pub(crate) fn run_or_merge(args: &PhotosArgs) -> anyhow::Result<Outcome> {
-    match &args.merge {
-        Some(PhotosCommand::Merge(args)) => jobs::run(args),
-        None => jobs::run(args),
+pub(crate) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
+    if let Some(PhotosCommand::Merge(args)) = &args.merge {
+        return run_merge(args);
     }
+    let PhotosArgs { given, out, job, .. } = args;
+    let result = out.as_ref().map(|out| out.join("report.html"));
+    jobs::run(
+        &Request { name: "photos", unit: "photographs", job, said: &given.said, result },
+        || {
+            let (options, set) = (args.options()?, args.set()?);
+            let steps = plan(&set, &options, &needed(args.outputs())?);
+            Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
+        },
+        |watch| {
+            let (options, set) = (args.options()?, args.set()?);
+            let report = photo::run(&set, &options, &needed(args.outputs())?, watch);
+            Ok(report.inspect_err(|why| {
+                if let PhotosError::NothingUsable { outlines, .. } = why {
+                    let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+                    job.common.note(&notes);
+                }
+            })?)
+        },
+        say_poses,
+    )
+}
+
+fn run_merge(MergeArgs { parts, out, given, job }: &MergeArgs) -> anyhow::Result<Outcome> {
+    let result = Some(out.join("report.html"));
+    jobs::run(
+        &Request { name: "photos merge", unit: "steps", job, said: &given.said, result },
+        || Ok(merge_plan(parts)),
+        |watch| Ok(merge(parts, out, watch)?),
+        say_poses,
+    )
 }
 
 fn say_poses(common: &Common, report: &PhotosReport) {
@@ -116,68 +146,5 @@ fn say_poses(common: &Common, report: &PhotosReport) {
         let said = of_all.filter_map(|row| Some((row.channel.name(), row.contrast?.mean)));
         let said: Vec<String> = said.map(|(name, mean)| format!("{name} {:.1} %", 100.0 * mean)).collect();
         common.say(&format!("{:<28} white less red zones: {}", rows[0].pose, said.join(", ")));
-    }
-}
-
-impl Command for PhotosArgs {
-    type Figures = PhotosFigures;
-
-    const UNIT: &'static str = "photographs";
-
-    const NAME: &'static str = "photos";
-
-    fn given(&self) -> Request<'_> {
-        (&self.job, &self.given.said, self.out.as_ref())
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let (options, set) = (self.options()?, self.set()?);
-        let steps = plan(&set, &options, &needed(self.outputs())?);
-        Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
-        let (options, set) = (self.options()?, self.set()?);
-        let report = run(&set, &options, &needed(self.outputs())?, watch);
-        Ok(report.inspect_err(|why| {
-            if let PhotosError::NothingUsable { outlines, .. } = why {
-                let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
-                self.job.common.note(&notes);
-            }
-        })?)
-    }
-
-    fn say(&self, common: &Common, report: &PhotosReport) {
-        say_poses(common, report);
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        self.out.as_ref().map(|out| out.join("report.html"))
-    }
-}
-
-impl Command for MergeArgs {
-    type Figures = PhotosFigures;
-
-    const NAME: &'static str = "photos merge";
-
-    fn given(&self) -> Request<'_> {
-        (&self.job, &self.given.said, Some(&self.out))
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(merge_plan(&self.parts).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
-        Ok(merge(&self.parts, &self.out, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &PhotosReport) {
-        say_poses(common, report);
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        Some(self.out.join("report.html"))
     }
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::Resettable;
-use lunula::job::{Given, Watch};
-use lunula::predictor::{AnalyseFigures, AnalyseJob, AnalyseReport, ModelMode, analyse, analyse_plan};
+use lunula::job::Given;
+use lunula::predictor::{AnalyseJob, AnalyseReport, ModelMode, analyse, analyse_plan};
 
-use crate::Common;
-use crate::jobs::{Command, Plan, Request, ResultArgs};
+use crate::jobs::{self, ResultArgs};
+use crate::{Common, Outcome};
 
 /// Show which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
@@ -30,39 +30,30 @@ pub(crate) struct AnalyseArgs {
     results: ResultArgs,
 }
 
-impl Command for AnalyseArgs {
-    type Figures = AnalyseFigures;
+pub(crate) fn run(AnalyseArgs { model, given, results }: &AnalyseArgs) -> anyhow::Result<Outcome> {
+    jobs::run(
+        &results.request("analyse", "steps", &given.said),
+        || Ok(analyse_plan(results.outputs().as_ref())),
+        |watch| Ok(analyse(model, results.outputs().as_ref(), watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "analyse";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
+fn say(common: &Common, report: &AnalyseReport) {
+    for (k, ModelMode { singular_value, targets, inputs }) in report.modes.modes.iter().enumerate() {
+        // Of very small and very large ones the digits, not zeros.
+        let value = match singular_value.abs() {
+            0.0 | 1e-4..1e7 => format!("{singular_value:.5}"),
+            _ => format!("{singular_value:.5e}"),
+        };
+        common.say(&format!("mode {}: singular value {value}", k + 1));
+        let text = |values: &[(String, f64)]| {
+            values.iter().map(|(name, value)| format!("{name} {value:+.3}")).collect::<Vec<_>>().join("  ")
+        };
+        common.say(&format!("  {}", text(&targets.0)));
+        common.say(&format!("  {}", text(&inputs.0)));
     }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(analyse_plan(self.results.outputs().as_ref()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
-        Ok(analyse(&self.model, self.results.outputs().as_ref(), watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &AnalyseReport) {
-        for (k, ModelMode { singular_value, targets, inputs }) in report.modes.modes.iter().enumerate() {
-            // Of very small and very large ones the digits, not zeros.
-            let value = match singular_value.abs() {
-                0.0 | 1e-4..1e7 => format!("{singular_value:.5}"),
-                _ => format!("{singular_value:.5e}"),
-            };
-            common.say(&format!("mode {}: singular value {value}", k + 1));
-            let text = |values: &[(String, f64)]| {
-                values.iter().map(|(name, value)| format!("{name} {value:+.3}")).collect::<Vec<_>>().join("  ")
-            };
-            common.say(&format!("  {}", text(&targets.0)));
-            common.say(&format!("  {}", text(&inputs.0)));
-        }
-        if let Some(condition) = report.modes.condition {
-            common.say(&format!("the strongest over the weakest: {condition:.2}"));
-        }
+    if let Some(condition) = report.modes.condition {
+        common.say(&format!("the strongest over the weakest: {condition:.2}"));
     }
 }

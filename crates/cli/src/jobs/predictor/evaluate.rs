@@ -4,14 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::Resettable;
-use lunula::job::{Given, Watch};
-use lunula::predictor::{
-    DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, Splits, evaluate, evaluate_plan, way,
-};
+use lunula::job::Given;
+use lunula::predictor::{DataFile, EvaluateChoices, EvaluateReport, Splits, evaluate, evaluate_plan, way};
 
-use crate::Common;
 use crate::jobs::predictor::{figure, say_merit};
-use crate::jobs::{Command, Plan, Request, ResultArgs};
+use crate::jobs::{self, ResultArgs};
+use crate::{Common, Outcome};
 
 /// Measure how far off a model is on recordings, and how far off its recipe is on recordings held out
 ///
@@ -39,66 +37,54 @@ pub(crate) struct EvaluateArgs {
     results: ResultArgs,
 }
 
-impl Command for EvaluateArgs {
-    type Figures = EvaluateFigures;
+pub(crate) fn run(args: &EvaluateArgs) -> anyhow::Result<Outcome> {
+    let (data, options) = (DataFile::of(&args.data), args.given.options.options());
+    let outputs = args.results.outputs();
+    jobs::run(
+        &args.results.request("evaluate", "steps", &args.given.said),
+        || {
+            let ambient = DataFile::ambient_step(&data, &options.rows);
+            Ok(evaluate_plan(data.len(), ambient, &options, None, outputs.as_ref()))
+        },
+        |watch| Ok(evaluate(&args.model, &data, &options, outputs.as_ref(), watch)?),
+        say,
+    )
+}
 
-    const NAME: &'static str = "evaluate";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
+fn say(common: &Common, report: &EvaluateReport) {
+    say_merit(common, "the model", &report.merit);
+    if let Some(plain) = &report.without_friction {
+        say_merit(common, "without the cone of friction", plain);
     }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let options = self.given.options.options();
-        let ambient = DataFile::ambient_step(&DataFile::of(&self.data), &options.rows);
-        Ok(evaluate_plan(self.data.len(), ambient, &options, None, self.results.outputs().as_ref()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
-        let options = self.given.options.options();
-        Ok(evaluate(&self.model, &DataFile::of(&self.data), &options, self.results.outputs().as_ref(), watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &EvaluateReport) {
-        say_merit(common, "the model", &report.merit);
-        if let Some(plain) = &report.without_friction {
-            say_merit(common, "without the cone of friction", plain);
+    say_coverage(common, report);
+    if let Some(found) = &report.held_out {
+        say_merit(common, "its recipe, each part held out in turn", &found.pooled);
+        for part in found.parts.iter().filter_map(|part| Some((&part.name, part.fault.as_ref()?))) {
+            common.say(&format!("  {}: not fitted: {}", part.0, part.1));
         }
-        say_coverage(common, report);
-        if let Some(found) = &report.held_out {
-            say_merit(common, "its recipe, each part held out in turn", &found.pooled);
-            for part in found.parts.iter().filter_map(|part| Some((&part.name, part.fault.as_ref()?))) {
-                common.say(&format!("  {}: not fitted: {}", part.0, part.1));
-            }
-            if let Some(honest) = &found.by_trajectory {
-                say_merit(
-                    common,
-                    "whole trajectories held out instead, which is what a new trajectory will see",
-                    honest,
-                );
-            }
-            for (name, ratio) in found.flattery.iter().flat_map(|by| &by.0) {
-                let text = ratio.map_or("an unknown number of".to_owned(), |ratio| format!("{ratio:.2}"));
-                common.say(&format!("  {name:<8} shuffled rows flatter it {text} times"));
-            }
-            match (&found.coverage, &found.no_coverage) {
-                (Some(found), _) => {
-                    for (k, (name, _)) in report.merit.rmse.0.iter().enumerate() {
-                        let reached =
-                            found.all.reached[k].map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
-                        let wanted = 100.0 * found.level;
-                        common.say(&format!(
-                            "  {name:<8} intervals for {wanted:.0} % of the rows of parts not seen hold {reached} %"
-                        ));
-                    }
+        if let Some(honest) = &found.by_trajectory {
+            say_merit(common, "whole trajectories held out instead, which is what a new trajectory will see", honest);
+        }
+        for (name, ratio) in found.flattery.iter().flat_map(|by| &by.0) {
+            let text = ratio.map_or("an unknown number of".to_owned(), |ratio| format!("{ratio:.2}"));
+            common.say(&format!("  {name:<8} shuffled rows flatter it {text} times"));
+        }
+        match (&found.coverage, &found.no_coverage) {
+            (Some(found), _) => {
+                for (k, (name, _)) in report.merit.rmse.0.iter().enumerate() {
+                    let reached = found.all.reached[k].map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
+                    let wanted = 100.0 * found.level;
+                    common.say(&format!(
+                        "  {name:<8} intervals for {wanted:.0} % of the rows of parts not seen hold {reached} %"
+                    ));
                 }
-                (None, Some(why)) => common.say(&format!("  no prediction intervals: {why}")),
-                (None, None) => {}
             }
+            (None, Some(why)) => common.say(&format!("  no prediction intervals: {why}")),
+            (None, None) => {}
         }
-        if let Some(found) = &report.splits {
-            say_splits(common, found);
-        }
+    }
+    if let Some(found) = &report.splits {
+        say_splits(common, found);
     }
 }
 

@@ -1,20 +1,14 @@
 //! The commands of the predictors: train, evaluate, predict, analyse, prune.
 
-mod analyse;
-mod evaluate;
-mod predict;
-mod prune;
-mod train;
+pub(crate) mod analyse;
+pub(crate) mod evaluate;
+pub(crate) mod predict;
+pub(crate) mod prune;
+pub(crate) mod train;
 
 use lunula::predictor::{ByTarget, Merit};
 
 use crate::Common;
-
-pub(crate) use crate::jobs::predictor::analyse::AnalyseArgs;
-pub(crate) use crate::jobs::predictor::evaluate::EvaluateArgs;
-pub(crate) use crate::jobs::predictor::predict::{PredictArgs, run_or_stream};
-pub(crate) use crate::jobs::predictor::prune::PruneArgs;
-pub(crate) use crate::jobs::predictor::train::TrainArgs;
 
 /// One line per target: `Fx_N  RMSE 0.31  bias -0.02  R2 0.87`.
 fn say_merit(common: &Common, what: &str, merit: &Merit) {

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{bail, ensure};
 use clap::Args;
-use lunula::job::{Given, Watch};
-use lunula::predictor::{DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan};
+use lunula::job::Given;
+use lunula::predictor::{DataFile, PredictChoices, PredictReport, predict, predict_plan};
 
-use crate::jobs::{self, Command, JobArgs, Plan, Request, needed};
+use crate::jobs::{self, JobArgs, Request, needed};
 use crate::{Common, Outcome};
 
 /// Predict forces and angle from photodiodes, with models that `lunula train` wrote
@@ -31,19 +31,6 @@ pub(crate) struct PredictArgs {
     job: JobArgs,
 }
 
-/// The stream on standard input, or the job.
-pub(crate) fn run_or_stream(args: &PredictArgs) -> anyhow::Result<Outcome> {
-    let (data, models) = args.parts()?;
-    if data != Path::new("-") {
-        return jobs::run(args);
-    }
-    let common = &args.job.common;
-    ensure!(args.out.is_none(), "a stream is answered on standard output; leave --out away and redirect it");
-    ensure!(!common.json, "a stream is answered on standard output, where --json would print; leave one of them away");
-    ensure!(!args.job.plan, "a stream has no plan; `lunula live --plan` shows that of a session");
-    jobs::live::session::run_stream(common, &args.given, models)
-}
-
 impl PredictArgs {
     fn parts(&self) -> anyhow::Result<(&Path, &[PathBuf])> {
         match &self.paths[..] {
@@ -53,33 +40,40 @@ impl PredictArgs {
     }
 }
 
-impl Command for PredictArgs {
-    type Figures = PredictFigures;
-
-    const NAME: &'static str = "predict";
-
-    fn given(&self) -> Request<'_> {
-        (&self.job, &self.given.said, self.out.as_ref())
+/// The stream on standard input, or the job.
+pub(crate) fn run(args: &PredictArgs) -> anyhow::Result<Outcome> {
+    let (data, models) = args.parts()?;
+    let PredictArgs { out, given, job, .. } = args;
+    if data == Path::new("-") {
+        ensure!(out.is_none(), "a stream is answered on standard output; leave --out away and redirect it");
+        ensure!(
+            !job.common.json,
+            "a stream is answered on standard output, where --json would print; leave one of them away"
+        );
+        ensure!(!job.plan, "a stream has no plan; `lunula live --plan` shows that of a session");
+        return jobs::live::session::run_stream(&job.common, given, models);
     }
+    jobs::run(
+        &Request { name: "predict", unit: "steps", job, said: &given.said, result: out.clone() },
+        || {
+            let options = given.options.options()?;
+            let ambient = DataFile::ambient_step([&DataFile::from(data.to_owned())], &options.rows);
+            Ok(predict_plan(models.len(), ambient, &options))
+        },
+        |watch| {
+            let out = needed(out.as_ref())?;
+            Ok(predict(models, data, &given.options.options()?, out, watch)?)
+        },
+        say,
+    )
+}
 
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let ((data, models), options) = (self.parts()?, self.given.options.options()?);
-        let ambient = DataFile::ambient_step([&DataFile::from(data.to_owned())], &options.rows);
-        Ok(predict_plan(models.len(), ambient, &options).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
-        let (out, (data, models)) = (needed(self.out.as_ref())?, self.parts()?);
-        Ok(predict(models, data, &self.given.options.options()?, out, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &PredictReport) {
-        common.say(&format!(
-            "{} rows, {} of them not known, {} outside of what was trained on",
-            report.rows, report.rows_not_known, report.rows_outside
-        ));
-        if report.touch + report.bending > 0 {
-            common.say(&format!("touch in {} rows, bending in {}", report.touch, report.bending));
-        }
+fn say(common: &Common, report: &PredictReport) {
+    common.say(&format!(
+        "{} rows, {} of them not known, {} outside of what was trained on",
+        report.rows, report.rows_not_known, report.rows_outside
+    ));
+    if report.touch + report.bending > 0 {
+        common.say(&format!("touch in {} rows, bending in {}", report.touch, report.bending));
     }
 }

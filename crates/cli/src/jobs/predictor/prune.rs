@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::Resettable;
-use lunula::job::{Given, Watch};
-use lunula::predictor::{DataFile, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan};
+use lunula::job::Given;
+use lunula::predictor::{DataFile, PruneChoices, PruneReport, PruneRow, prune, prune_plan};
 
-use crate::Common;
 use crate::jobs::predictor::figure;
-use crate::jobs::{Command, Plan, Request, ResultArgs};
+use crate::jobs::{self, ResultArgs};
+use crate::{Common, Outcome};
 
 /// Compare the linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
@@ -34,39 +34,36 @@ pub(crate) struct PruneArgs {
     results: ResultArgs,
 }
 
-impl Command for PruneArgs {
-    type Figures = PruneFigures;
+pub(crate) fn run(args: &PruneArgs) -> anyhow::Result<Outcome> {
+    let PruneArgs { data, validate, given, results } = args;
+    let outputs = results.outputs();
+    jobs::run(
+        &results.request("prune", "steps", &given.said),
+        || {
+            let files = DataFile::of(&[&data[..], validate].concat());
+            let ambient = DataFile::ambient_step(&files, &given.options.rows);
+            Ok(prune_plan([data.len(), validate.len()], ambient, outputs.as_ref()))
+        },
+        |watch| {
+            let (data, validate) = (DataFile::of(data), DataFile::of(validate));
+            Ok(prune(&data, &validate, &given.options.wanted(), outputs.as_ref(), watch)?)
+        },
+        say,
+    )
+}
 
-    const NAME: &'static str = "prune";
-
-    fn given(&self) -> Request<'_> {
-        self.results.given(&self.given.said)
-    }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let files = [&self.data[..], &self.validate].concat();
-        let ambient = DataFile::ambient_step(&DataFile::of(&files), &self.given.options.rows);
-        Ok(prune_plan([self.data.len(), self.validate.len()], ambient, self.results.outputs().as_ref()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
-        let (data, validate) = (DataFile::of(&self.data), DataFile::of(&self.validate));
-        Ok(prune(&data, &validate, &self.given.options.wanted(), self.results.outputs().as_ref(), watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &PruneReport) {
-        let line = |row: &PruneRow| {
-            let errors = row.validate_rmse.iter().flat_map(|by| &by.0);
-            let errors: Vec<String> = errors.map(|(name, value)| format!("{name} {}", figure(*value))).collect();
-            let shown =
-                if errors.is_empty() { "dependent on each other: no one model".to_owned() } else { errors.join("  ") };
-            format!("  {:<28} {shown}", row.inputs.join(" "))
-        };
-        common.say(&format!("{} subsets; the best of each number, validation RMSE:", report.subsets));
-        report.best_of_size.iter().for_each(|row| common.say(&line(row)));
-        if !report.without_one.is_empty() {
-            common.say("all, then all but one:");
-            report.without_one.iter().for_each(|row| common.say(&line(row)));
-        }
+fn say(common: &Common, report: &PruneReport) {
+    let line = |row: &PruneRow| {
+        let errors = row.validate_rmse.iter().flat_map(|by| &by.0);
+        let errors: Vec<String> = errors.map(|(name, value)| format!("{name} {}", figure(*value))).collect();
+        let shown =
+            if errors.is_empty() { "dependent on each other: no one model".to_owned() } else { errors.join("  ") };
+        format!("  {:<28} {shown}", row.inputs.join(" "))
+    };
+    common.say(&format!("{} subsets; the best of each number, validation RMSE:", report.subsets));
+    report.best_of_size.iter().for_each(|row| common.say(&line(row)));
+    if !report.without_one.is_empty() {
+        common.say("all, then all but one:");
+        report.without_one.iter().for_each(|row| common.say(&line(row)));
     }
 }

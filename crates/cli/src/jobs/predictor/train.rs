@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, Watch};
+use lunula::job::Given;
 use lunula::predictor::models::{EigennailsReport, Report};
-use lunula::predictor::{TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan};
+use lunula::predictor::{TrainChoices, TrainInputs, TrainOutputs, TrainReport, train, train_plan};
 
-use crate::Common;
 use crate::jobs::predictor::{figure, say_merit};
-use crate::jobs::{Command, JobArgs, Plan, Request, needed};
+use crate::jobs::{self, JobArgs, Request, needed};
+use crate::{Common, Outcome};
 
 /// Train a model that predicts forces or angles from photodiodes (chapter 5)
 ///
@@ -35,82 +35,74 @@ pub(crate) struct TrainArgs {
     job: JobArgs,
 }
 
-impl TrainArgs {
-    fn outputs(&self) -> Option<TrainOutputs> {
-        Some(TrainOutputs { model: self.out.clone()?, learning_curve: self.learning_curve.clone(), merit: None })
-    }
+pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
+    let TrainArgs { inputs, given, out, learning_curve, job } = args;
+    let options = given.options.options();
+    jobs::run(
+        &Request { name: "train", unit: "steps", job, said: &given.said, result: out.clone() },
+        || {
+            let ambient = inputs.ambient_step(&options.wanted.rows);
+            Ok(train_plan(inputs, ambient, &options.recipe, learning_curve.is_some()))
+        },
+        |watch| {
+            let model = needed(out.clone())?;
+            let outputs = TrainOutputs { model, learning_curve: learning_curve.clone(), merit: None };
+            Ok(train(inputs, &options, &outputs, watch)?)
+        },
+        say,
+    )
 }
 
-impl Command for TrainArgs {
-    type Figures = TrainFigures;
-
-    const NAME: &'static str = "train";
-
-    fn given(&self) -> Request<'_> {
-        (&self.job, &self.given.said, self.out.as_ref())
+fn say(common: &Common, report: &TrainReport) {
+    for file in report.data.iter().chain(&report.validate).filter(|file| file.used < file.rows) {
+        common.say(&format!(
+            "{}: {} of {} rows used ({} lack a cell, {} invalid, {} with a fault of the sensor)",
+            file.path.display(),
+            file.used,
+            file.rows,
+            file.empty,
+            file.invalid,
+            file.faults
+        ));
     }
-
-    fn plan(&self) -> anyhow::Result<Plan> {
-        let options = self.given.options.options();
-        let ambient = self.inputs.ambient_step(&options.wanted.rows);
-        Ok(train_plan(&self.inputs, ambient, &options.recipe, self.learning_curve.is_some()).into())
-    }
-
-    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
-        Ok(train(&self.inputs, &self.given.options.options(), &needed(self.outputs())?, watch)?)
-    }
-
-    fn say(&self, common: &Common, report: &TrainReport) {
-        for file in report.data.iter().chain(&report.validate).filter(|file| file.used < file.rows) {
+    match &report.fit {
+        Report::LeastSquares(fit) => common.say(&format!(
+            "{} terms, {} of them independent; condition {}, {} digits of the coefficients can be trusted",
+            fit.terms.len(),
+            fit.rank.map_or("-".to_owned(), |rank| rank.to_string()),
+            fit.condition.map_or("infinite".to_owned(), |condition| format!("{condition:.1e}")),
+            fit.digits.map_or("-".to_owned(), |digits| format!("{digits:.0}"))
+        )),
+        Report::Network(fit) => {
+            let best = &fit.restarts[fit.best];
             common.say(&format!(
-                "{}: {} of {} rows used ({} lack a cell, {} invalid, {} with a fault of the sensor)",
-                file.path.display(),
-                file.used,
-                file.rows,
-                file.empty,
-                file.invalid,
-                file.faults
+                "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, \
+                 quartiles \
+                 {:.4} apart",
+                fit.parameters,
+                fit.restarts.len(),
+                best.best_epoch,
+                best.score,
+                fit.median_score,
+                fit.score_iqr
             ));
         }
-        match &report.fit {
-            Report::LeastSquares(fit) => common.say(&format!(
-                "{} terms, {} of them independent; condition {}, {} digits of the coefficients can be trusted",
-                fit.terms.len(),
-                fit.rank.map_or("-".to_owned(), |rank| rank.to_string()),
-                fit.condition.map_or("infinite".to_owned(), |condition| format!("{condition:.1e}")),
-                fit.digits.map_or("-".to_owned(), |digits| format!("{digits:.0}"))
-            )),
-            Report::Network(fit) => {
-                let best = &fit.restarts[fit.best];
-                common.say(&format!(
-                    "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, \
-                     quartiles \
-                     {:.4} apart",
-                    fit.parameters,
-                    fit.restarts.len(),
-                    best.best_epoch,
-                    best.score,
-                    fit.median_score,
-                    fit.score_iqr
-                ));
-            }
-            Report::Eigennails(fit) => say_eigennails(common, fit, &report.targets),
-        }
-        say_merit(common, "trained", &report.training);
-        if let Some(merit) = &report.validation {
-            say_merit(common, "validated", merit);
-        }
-        for one in &report.without {
-            say_merit(common, &format!("validated, without {}", one.without), &one.validation);
-        }
-        if let Some(half_width) = &report.half_width {
-            for (name, half) in &half_width.0 {
-                common.say(&format!(
-                    "  {name:<8} {:.0} % of the validated rows within ± {}",
-                    100.0 * report.level,
-                    figure(*half)
-                ));
-            }
+        Report::Eigennails(fit) => say_eigennails(common, fit, &report.targets),
+    }
+    say_merit(common, "trained", &report.training);
+    if let Some(merit) = &report.validation {
+        say_merit(common, "validated", merit);
+    }
+    for one in &report.without {
+        say_merit(common, &format!("validated, without {}", one.without), &one.validation);
+    }
+    if let Some(half_width) = &report.half_width {
+        for (name, half) in &half_width.0 {
+            common.say(&format!(
+                "  {name:<8} {:.0} % of the validated rows within ± {}",
+                100.0 * report.level,
+                figure(*half)
+            ));
         }
     }
 }
