@@ -22,13 +22,65 @@ pub(super) struct TradeoffArgs {
 
 #[derive(Debug, Subcommand)]
 enum Job {
-    All(AllArgs),
-    Photos(PhotosArgs),
-    Posture(PostureArgs),
-    Align(AlignArgs),
-    Predictor(PredictorArgs),
-    Hemodynamics(HemodynamicsArgs),
-    Switch(SwitchArgs),
+    /// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, one picture per job
+    All {
+        /// Seed of the synthetic inputs
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        #[command(flatten)]
+        measuring: Measuring,
+    },
+    /// Resampling against the exact normalized pictures, and detection against the exact outlines
+    ///
+    /// On synthetic photographs of its own, or on --input (a set of photographs) with --truth.
+    Photos {
+        /// Subjects of the synthetic photographs, in four poses [default: 16; --quick: 4]
+        #[arg(long, value_name = "N", conflicts_with = "input")]
+        subjects: Option<u32>,
+        #[command(flatten)]
+        measured: Measured,
+    },
+    /// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched
+    ///
+    /// On a synthetic video of its own, or on --input (a folder with video.mp4 and markers.toml) with --truth.
+    Posture {
+        /// The synthetic video's scene, as of `lunula phantom video`
+        #[arg(long, value_enum, default_value = "clean", conflicts_with = "input")]
+        scene: Preset,
+        #[command(flatten)]
+        measured: Measured,
+    },
+    /// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all;
+    /// labels over gaps
+    ///
+    /// On a synthetic video and log of its own (random movement, irregular frames), or on --input (a folder with
+    /// video.mp4, markers.toml with a [clock], and log.csv) with --truth.
+    Align {
+        /// Their length [default: 60; --quick: 20]
+        #[arg(long, conflicts_with = "input")]
+        seconds: Option<f64>,
+        #[command(flatten)]
+        measured: Measured,
+    },
+    /// Forces against measured ones for all models and sizes, with the time of a fit and of a prediction; and solvers
+    /// on ill-conditioned sets
+    ///
+    /// On synthetic recordings of its own (two spirals to train on, random movement to tell the error on), or on
+    /// --input (a folder of recordings to train on) with --truth (a folder of recordings to tell the error on).
+    Predictor(Measured),
+    /// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv,
+    /// .png, .svg)
+    ///
+    /// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its
+    /// tightest tolerance.
+    Hemodynamics(Measuring),
+    /// What a press of the virtual switch loses by delay and misses for several models, and its delay against the rate
+    /// of false switches
+    ///
+    /// On synthetic recordings of its own (presses and hours of rest), or on --input (a folder of recordings to train
+    /// on, with forces and a column `contact` of 0 and 1) with --truth (a folder of others: the first half by name
+    /// chooses thresholds, the second is judged).
+    Switch(Measured),
 }
 
 /// What every trade-off takes.
@@ -57,7 +109,7 @@ impl Measuring {
         let effort = Effort {
             repeats: self.repeats.map_or(repeats, usize::from),
             quick: self.quick,
-            threads: self.common.threads.map_or(0, usize::from),
+            threads: self.common.threads(),
             stop,
         };
         Plan::new(seed, effort, self.peers.clone())
@@ -96,104 +148,22 @@ const REPEATS: usize = 3;
 /// Of those that take a tenth of a millisecond.
 const SHORT_REPEATS: usize = 9;
 
-/// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, one picture per job
-#[derive(Debug, Args)]
-struct AllArgs {
-    /// Seed of the synthetic inputs
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    #[command(flatten)]
-    measuring: Measuring,
-}
-
-/// Resampling against the exact normalized pictures, and detection against the exact outlines
-///
-/// On synthetic photographs of its own, or on --input (a set of photographs) with --truth.
-#[derive(Debug, Args)]
-struct PhotosArgs {
-    /// Subjects of the synthetic photographs, in four poses [default: 16; --quick: 4]
-    #[arg(long, value_name = "N", conflicts_with = "input")]
-    subjects: Option<u32>,
-    #[command(flatten)]
-    measured: Measured,
-}
-
-/// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched
-///
-/// On a synthetic video of its own, or on --input (a folder with video.mp4 and markers.toml) with --truth.
-#[derive(Debug, Args)]
-struct PostureArgs {
-    /// The synthetic video's scene, as of `lunula phantom video`
-    #[arg(long, value_enum, default_value = "clean", conflicts_with = "input")]
-    scene: Preset,
-    #[command(flatten)]
-    measured: Measured,
-}
-
-/// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all;
-/// labels over gaps
-///
-/// On a synthetic video and log of its own (random movement, irregular frames), or on --input (a folder with video.mp4,
-/// markers.toml with a [clock], and log.csv) with --truth.
-#[derive(Debug, Args)]
-struct AlignArgs {
-    /// Their length [default: 60; --quick: 20]
-    #[arg(long, conflicts_with = "input")]
-    seconds: Option<f64>,
-    #[command(flatten)]
-    measured: Measured,
-}
-
-/// Forces against measured ones for all models and sizes, with the time of a fit and of a prediction; and solvers on
-/// ill-conditioned sets
-///
-/// On synthetic recordings of its own (two spirals to train on, random movement to tell the error on), or on --input (a
-/// folder of recordings to train on) with --truth (a folder of recordings to tell the error on).
-#[derive(Debug, Args)]
-struct PredictorArgs {
-    #[command(flatten)]
-    measured: Measured,
-}
-
-/// What a press of the virtual switch loses by delay and misses for several models, and its delay against the rate of
-/// false switches
-///
-/// On synthetic recordings of its own (presses and hours of rest), or on --input (a folder of recordings to train on,
-/// with forces and a column `contact` of 0 and 1) with --truth (a folder of others: the first half by name chooses
-/// thresholds, the second is judged).
-#[derive(Debug, Args)]
-struct SwitchArgs {
-    #[command(flatten)]
-    measured: Measured,
-}
-
-/// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv,
-/// .png, .svg)
-///
-/// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its
-/// tightest tolerance.
-#[derive(Debug, Args)]
-struct HemodynamicsArgs {
-    #[command(flatten)]
-    measuring: Measuring,
-}
-
 pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
     match &args.job {
-        Job::Photos(args) => args.measured.run(curves::Job::Photos, |plan| {
-            plan.subjects = args.subjects.unwrap_or(plan.subjects);
+        Job::Photos { subjects, measured } => measured.run(curves::Job::Photos, |plan| {
+            plan.subjects = subjects.unwrap_or(plan.subjects);
         }),
-        Job::Predictor(args) => args.measured.run(curves::Job::Predictor, |_| {}),
-        Job::Switch(args) => args.measured.run(curves::Job::Switch, |_| {}),
-        Job::Hemodynamics(HemodynamicsArgs { measuring }) => {
+        Job::Predictor(measured) => measured.run(curves::Job::Predictor, |_| {}),
+        Job::Switch(measured) => measured.run(curves::Job::Switch, |_| {}),
+        Job::Hemodynamics(measuring) => {
             let stop = measuring.common.start()?;
             one(curves::Job::Hemodynamics, &measuring.plan(SHORT_REPEATS, 1, stop), measuring)
         }
-        Job::Posture(args) => args.measured.run(curves::Job::Posture, |plan| plan.preset = args.scene),
-        Job::Align(args) => args.measured.run(curves::Job::Align, |plan| {
-            plan.seconds = args.seconds.unwrap_or(plan.seconds);
+        Job::Posture { scene, measured } => measured.run(curves::Job::Posture, |plan| plan.preset = *scene),
+        Job::Align { seconds, measured } => measured.run(curves::Job::Align, |plan| {
+            plan.seconds = seconds.unwrap_or(plan.seconds);
         }),
-        Job::All(args) => all(args),
+        Job::All { seed, measuring } => all(*seed, measuring),
     }
 }
 
@@ -217,9 +187,9 @@ fn one(job: curves::Job, plan: &Plan, measuring: &Measuring) -> anyhow::Result<O
     Ok(Outcome::Done)
 }
 
-fn all(args: &AllArgs) -> anyhow::Result<Outcome> {
-    let Measuring { out, common, .. } = &args.measuring;
-    let plan = args.measuring.plan(REPEATS, args.seed, common.start()?);
+fn all(seed: u64, measuring: &Measuring) -> anyhow::Result<Outcome> {
+    let Measuring { out, common, .. } = measuring;
+    let plan = measuring.plan(REPEATS, seed, common.start()?);
     let progress = common.progress(curves::Job::ALL.len(), "jobs");
     let outcomes = curves::all(&plan, |job| {
         progress.set_message(job.name());
