@@ -111,7 +111,7 @@ pub(super) fn run<P: Into<Plan>, F: Serialize>(
     let report = run(&Watch { said: request.said, stop: &stop, tick: &tick });
     bar.finish_and_clear();
     let report = report?;
-    name_failures(&report.failed);
+    let outcome = outcome(&report.failed);
     common.warn(&report.warnings);
     common.note(&report.notes);
     common.print_json(&report)?;
@@ -123,7 +123,7 @@ pub(super) fn run<P: Into<Plan>, F: Serialize>(
     let look = report.pictures.first().or(request.result.as_ref());
     let look = look.map_or(String::new(), |look| format!("; look at {}", look.display()));
     common.say(&format!("{:.2} s{look}", report.wall_s));
-    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+    Ok(outcome)
 }
 
 /// A plan, as words or, with `--json`, as an object.
@@ -139,10 +139,11 @@ fn show(common: &Common, job: &str, plan: &Plan) -> anyhow::Result<Outcome> {
             print_line(&shown_lines(&format!("{:<34} {fate:<9} {}", step.stage, step.reason)));
         }
     }
-    name_failures(&plan.failed);
-    Ok(if plan.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+    Ok(outcome(&plan.failed))
 }
 
-fn name_failures(failed: &[String]) {
+/// Names what failed: how the job ended.
+fn outcome(failed: &[String]) -> Outcome {
     failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));
+    if failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed }
 }

@@ -14,7 +14,7 @@ use lunula::prompt::{
 use lunula_ui::{Latest, Prompting};
 
 use crate::jobs::live::session::tell;
-use crate::jobs::{JobArgs, Plan, name_failures, show};
+use crate::jobs::{JobArgs, Plan, outcome, show};
 use crate::ui::PageArgs;
 use crate::{Common, Outcome};
 
@@ -142,7 +142,7 @@ impl Prompting for Page {
 }
 
 fn ended(common: &Common, report: &PromptReport) -> Outcome {
-    name_failures(&report.failed);
+    let outcome = outcome(&report.failed);
     let covered = &report.coverage.cylindrical;
     if report.rows > 0 {
         common.say(&format!("{} rows in {}", report.rows, report.out.display()));
@@ -161,5 +161,5 @@ fn ended(common: &Common, report: &PromptReport) -> Outcome {
         let off = frames.off_px_max.map_or("-".to_owned(), |off| format!("{off:.2}"));
         common.say(&format!("{} frames shown, {} dropped, at most {off} px off", frames.shown, frames.dropped));
     }
-    if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed }
+    outcome
 }

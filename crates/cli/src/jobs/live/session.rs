@@ -16,7 +16,7 @@ use lunula::words::shown_lines;
 use lunula_ui::Latest;
 use serde_json::json;
 
-use crate::jobs::{JobArgs, Plan, name_failures, show};
+use crate::jobs::{JobArgs, Plan, outcome, show};
 use crate::ui::PageArgs;
 use crate::{Common, Outcome, out};
 
@@ -99,16 +99,20 @@ struct OutArgs {
     replace: bool,
 }
 
+impl OutArgs {
+    fn files(&self) -> SessionFiles {
+        SessionFiles { out: self.out.clone(), replace: self.replace, ..SessionFiles::default() }
+    }
+}
+
 pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
     let (common, options) = (&args.job.common, &args.given.options);
     let stop = common.start()?;
     let files = SessionFiles {
-        out: args.out.out.clone(),
-        replace: args.out.replace,
         models: args.models.clone(),
         switches: args.switch.clone(),
         events: args.events.clone(),
-        mouse: None,
+        ..args.out.files()
     };
     if args.job.plan {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
@@ -127,13 +131,7 @@ pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
     let MouseOptions { stream, answer } = args.given.options.clone();
     let options = LiveOptions { stream, answer, tcp: None, lsl: None, serve: false };
     let stop = common.start()?;
-    let files = SessionFiles {
-        out: args.out.out.clone(),
-        replace: args.out.replace,
-        models: all(&args.models),
-        mouse: Some(args.mouse.clone()),
-        ..SessionFiles::default()
-    };
+    let files = SessionFiles { models: all(&args.models), mouse: Some(args.mouse.clone()), ..args.out.files() };
     if args.job.plan {
         return show(common, "mouse", &Plan::from(live_steps(&options, &files)));
     }
@@ -162,7 +160,7 @@ pub(crate) fn run_stream(
     };
     let files = SessionFiles { models: all(models), ..SessionFiles::default() };
     let report = session(common, &given.said, &stop, &options, &files, None)?;
-    Ok(outcome(&report))
+    Ok(outcome(&report.failed))
 }
 
 /// A session with models; its rows go to standard output, but for a mouse's.
@@ -214,7 +212,7 @@ fn served(
 pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
     let (common, options) = (&args.job.common, &args.given.options);
     let stop = common.start()?;
-    let files = SessionFiles { out: args.out.out.clone(), replace: args.out.replace, ..SessionFiles::default() };
+    let files = args.out.files();
     if args.job.plan {
         return show(common, "record", &Plan::from(record_steps(options, &files)));
     }
@@ -242,17 +240,12 @@ pub(super) fn tell(common: &Common, what: &str) {
     }
 }
 
+/// Says figures and failures; warnings were said when they were known.
 fn ended(common: &Common, report: &SessionReport) -> Outcome {
     if !common.quiet && !common.json {
         eprintln!("{}", shown_lines(&words(report)));
     }
-    outcome(report)
-}
-
-/// Names what failed; warnings were said when they were known.
-fn outcome(report: &SessionReport) -> Outcome {
-    name_failures(&report.failed);
-    if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed }
+    outcome(&report.failed)
 }
 
 fn words(report: &Report<SessionFigures>) -> String {

@@ -10,7 +10,7 @@ use lunula::outlines::{EditOptions, Editor, Pressed, edit_steps};
 use lunula::photo::PhotoSet;
 use lunula_ui::{Editing, Heard, Latest};
 
-use crate::jobs::{JobArgs, Plan, name_failures, show};
+use crate::jobs::{JobArgs, Plan, outcome, show};
 use crate::ui::PageArgs;
 use crate::{Common, Outcome};
 
@@ -57,11 +57,11 @@ pub(crate) fn run(args: &EditArgs) -> anyhow::Result<Outcome> {
     });
     served?;
     let report = editor.report(&Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} });
-    name_failures(&report.failed);
+    let outcome = outcome(&report.failed);
     common.warn(&report.warnings);
     common.print_json(&report)?;
     say(common, &report);
-    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+    Ok(outcome)
 }
 
 fn say(common: &Common, report: &lunula::outlines::EditReport) {
