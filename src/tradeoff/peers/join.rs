@@ -5,6 +5,7 @@ use anyhow::{Context, ensure};
 use super::report::{PeerReport, program};
 use super::table::PeerRow;
 use crate::tradeoff::measure::rows::Row;
+use crate::tradeoff::measure::timing::Timing;
 
 /// Puts the rows of `scene` among `others`, all of one job, beside those measured here; what became of each program.
 ///
@@ -48,21 +49,14 @@ pub(in crate::tradeoff) fn join(
 }
 
 fn of(other: &PeerRow, job: &'static str, choice: &'static str) -> Row {
-    Row {
-        job,
-        setting: other.setting.clone(),
-        error: other.error,
-        error_unit: other.error_unit.clone(),
-        run_s: other.run_s,
-        work: other.work,
-        choice,
-        run_low_s: other.run_low_s,
-        run_high_s: other.run_high_s,
-        repeats: other.repeats,
-        knee: false,
-        default: false,
-        peer: true,
-    }
+    let time = Timing {
+        median_s: other.run_s,
+        low_s: other.run_low_s,
+        high_s: other.run_high_s,
+        repeats: other.repeats as usize,
+    };
+    let error = (other.error, other.error_unit.as_str());
+    Row { peer: true, ..Row::own((job, choice), &other.setting, error, time, other.work) }
 }
 
 #[cfg(test)]
