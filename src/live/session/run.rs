@@ -458,12 +458,7 @@ mod tests {
         log(&dir.join(&name), rows);
         let stream = StreamOptions {
             source: vec![OfFinger::any(dir.join(&name).to_str().unwrap().parse().unwrap())],
-            force: Vec::new(),
-            volts_per_count: None,
-            names: None,
-            keep: Vec::new(),
-            seconds: None,
-            log: crate::log::LogReading::default(),
+            ..StreamOptions::default()
         };
         let gate = GateChoices { f_min: 0.1, theta_touch: 0.0, hysteresis: 0.0 };
         let answer = AnswerOptions { gate, intervals: false, keep_faults: false };

@@ -1,21 +1,12 @@
 use super::*;
 use crate::job::Watch;
 use crate::live::streams::source::OfFinger;
-use crate::log::LogReading;
 use crate::prompt::{Nobody, REST_N};
 use crate::table::Table;
 use lunula_predictor::{ForceSpace, cone_coverage};
 
 pub(super) fn options(source: &str) -> StreamOptions {
-    StreamOptions {
-        source: vec![OfFinger::any(source.parse().unwrap())],
-        force: Vec::new(),
-        volts_per_count: None,
-        names: None,
-        keep: Vec::new(),
-        seconds: None,
-        log: LogReading::default(),
-    }
+    StreamOptions { source: vec![OfFinger::any(source.parse().unwrap())], ..StreamOptions::default() }
 }
 
 const SHORT: &str = "[[step]]\nkind = \"ask\"\n[[step]]\nkind = \"check\"\nchecks = [\"photodiodes\", \"tare\", \
