@@ -255,14 +255,7 @@ impl Answers {
         self.text.clear();
         self.sensor.answering.push_row(&mut self.text, time_s, values, answer.contact);
         let pressed = self.switch.as_ref().map(SwitchOutput::is_pressed);
-        outputs.row(&AnswerRow {
-            text: &self.text,
-            values,
-            finger,
-            pressed,
-            time_s,
-            volts: &self.sensor.volts,
-            contact: answer.contact,
-        })
+        let seen = Seen { time_s, volts: &self.sensor.volts, answers: values, contact: answer.contact, pressed };
+        outputs.row(&AnswerRow { text: &self.text, finger, seen })
     }
 }

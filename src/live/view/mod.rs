@@ -99,7 +99,9 @@ pub(super) struct Seen<'a> {
     pub(super) time_s: f64,
     pub(super) volts: &'a [f64],
     pub(super) answers: &'a [f64],
+    /// What the gate said.
     pub(super) contact: Option<Contact>,
+    /// Whether its switch is pressed; none without one.
     pub(super) pressed: Option<bool>,
 }
 

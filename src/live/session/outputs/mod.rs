@@ -16,7 +16,6 @@ use std::path::PathBuf;
 use events::EventsFile;
 #[cfg(feature = "lsl")]
 use lunula_live::source::LslOutlet;
-use lunula_predictor::Contact;
 use pipe::Pipe;
 use recording::Recording;
 
@@ -50,16 +49,10 @@ pub(super) struct Outputs {
 pub(super) struct AnswerRow<'a> {
     /// `time_s` and what is predicted, as text without an end.
     pub(super) text: &'a str,
-    /// The same as numbers, without the time.
-    pub(super) values: &'a [f64],
     /// Whose it is, and its place among the fingers; none where there is one only.
     pub(super) finger: Option<(&'a str, usize)>,
-    /// Whether its switch is pressed; none without one.
-    pub(super) pressed: Option<bool>,
-    /// The time and the voltages that were answered, and what the gate said.
-    pub(super) time_s: f64,
-    pub(super) volts: &'a [f64],
-    pub(super) contact: Option<Contact>,
+    /// The same as numbers, and what was answered.
+    pub(super) seen: Seen<'a>,
 }
 
 impl Outputs {
@@ -134,9 +127,7 @@ impl Outputs {
     /// A recording or a stream that can't be written.
     pub(super) fn row(&mut self, row: &AnswerRow<'_>) -> Result<(), LiveError> {
         if let Some(view) = &mut self.view {
-            let AnswerRow { time_s, volts, values: answers, contact, pressed, .. } = *row;
-            let finger = row.finger.map_or(0, |(_, place)| place);
-            view.sample(finger, &Seen { time_s, volts, answers, contact, pressed });
+            view.sample(row.finger.map_or(0, |(_, place)| place), &row.seen);
         }
         let line = &mut self.line;
         line.clear();
@@ -149,7 +140,7 @@ impl Outputs {
         }
         if self.has_switch {
             line.push(',');
-            if let Some(pressed) = row.pressed {
+            if let Some(pressed) = row.seen.pressed {
                 push_number(line, f64::from(u8::from(pressed)));
             }
         }
@@ -237,9 +228,9 @@ impl Outlet {
         let Some(open) = &self.open else { return Ok(()) };
         self.values.clear();
         self.values.extend(row.finger.map(|(_, place)| place as f64));
-        self.values.extend(row.values);
+        self.values.extend(row.seen.answers);
         if has_switch {
-            self.values.push(row.pressed.map_or(f64::NAN, |pressed| f64::from(u8::from(pressed))));
+            self.values.push(row.seen.pressed.map_or(f64::NAN, |pressed| f64::from(u8::from(pressed))));
         }
         open.push(&self.values).map_err(LiveError::Request)
     }
