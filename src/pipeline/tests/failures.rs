@@ -9,7 +9,7 @@ use super::toys::{
     Act, Diary, Toy, folder_and_diary, from_scratch, given, left_at_work, options, outcomes, ran, result, results,
     run_on, toy,
 };
-use crate::job::{Made, Maker, Work};
+use crate::job::{Made, Work};
 
 fn failing(id: &str, act: Act, diary: &Diary) -> super::super::Task {
     Toy { act, diary: Arc::clone(diary), ..Toy::default() }.task(id, vec![])
@@ -101,17 +101,13 @@ fn missing_inputs_and_names_are_told() {
 
 #[test]
 fn an_input_that_changes_as_it_is_worked_on_fails_the_task() {
-    struct Spoils;
-    impl Maker for Spoils {
-        fn run(&self, work: &Work) -> anyhow::Result<Made> {
-            fs::write(&work.inputs[0].path, "changed")?;
-            Ok(Made::default())
-        }
-    }
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("x.txt"), "x").unwrap();
     let mut task = toy("a", 1, vec![given(dir.path(), "x.txt")], &Diary::default());
-    task.job = Arc::new(Spoils);
+    task.job = Arc::new(|work: &Work<'_>| {
+        fs::write(&work.inputs[0].path, "changed")?;
+        Ok(Made::default())
+    });
     let out = dir.path().join("out");
     let report = run_on(&[task], &out);
     assert!(report.failures[0].what.contains("changes as it is read"), "{report:?}");

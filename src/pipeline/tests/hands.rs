@@ -1,13 +1,14 @@
 //! Results and inputs changed between runs: what that touches is made again, and nothing that somebody wrote is lost.
 
 use std::fs;
+use std::sync::{Arc, Mutex};
 
 use super::super::{Source, Standing, Why, survey};
 use super::toys::{
     Diary, Toy, folder_and_diary, from_scratch, given, left_at_work, options, outcomes, ran, result, results, run_on,
     run_with, toy,
 };
-use crate::job::{Made, Maker, Work};
+use crate::job::{Made, Work};
 
 #[test]
 fn nothing_is_done_twice_and_a_survey_tells_why_something_is() {
@@ -188,21 +189,18 @@ fn an_unreadable_record_counts_as_none() {
 
 #[test]
 fn a_before_is_shown_only_where_it_is_whole_and_of_the_same_options() {
-    struct Looks(std::sync::Mutex<Vec<bool>>);
-    impl Maker for Looks {
-        fn run(&self, work: &Work) -> anyhow::Result<Made> {
-            self.0.lock().unwrap().push(work.before.is_some());
-            fs::write(work.folder.join("x.txt"), "x")?;
-            Ok(Made::default())
-        }
-    }
     let dir = tempfile::tempdir().unwrap();
-    let looks = std::sync::Arc::new(Looks(std::sync::Mutex::default()));
+    let shown: Arc<Mutex<Vec<bool>>> = Arc::default();
     let run_once = |text: &str, option: u64| {
         fs::write(dir.path().join("in.txt"), text).unwrap();
         let mut task = toy("a", 1, vec![given(dir.path(), "in.txt")], &Diary::default());
         task.options = serde_json::json!({ "salt": option });
-        task.job = looks.clone();
+        let shown = Arc::clone(&shown);
+        task.job = Arc::new(move |work: &Work<'_>| {
+            shown.lock().unwrap().push(work.before.is_some());
+            fs::write(work.folder.join("x.txt"), "x")?;
+            Ok(Made::default())
+        });
         assert!(matches!(task.inputs[0].source, Source::Given { .. }));
         run_on(&[task], &dir.path().join("out"));
     };
@@ -211,5 +209,5 @@ fn a_before_is_shown_only_where_it_is_whole_and_of_the_same_options() {
     run_once("3", 2);
     fs::write(dir.path().join("out/a/x.txt"), "mine").unwrap();
     run_once("4", 2);
-    assert_eq!(*looks.0.lock().unwrap(), [false, true, false, false]);
+    assert_eq!(*shown.lock().unwrap(), [false, true, false, false]);
 }

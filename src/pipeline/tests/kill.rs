@@ -10,27 +10,12 @@ use std::time::Duration;
 
 use super::super::{Input, Task};
 use super::toys::{Toy, from_scratch, left_at_work, options, result, results, run_on, run_with};
-use crate::job::{Made, Maker, Work};
+use crate::job::{Maker, Work};
 use crate::pipeline::store::Store;
 
 const OUT: &str = "LUNULA_TEST_KILLED";
 
-/// A toy that writes down, outside of the results, that it begins.
-struct Telling {
-    toy: Toy,
-    log: String,
-}
-
-impl Maker for Telling {
-    fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let mut log = fs::File::options().create(true).append(true).open(&self.log)?;
-        log.write_all(format!("{}\n", self.toy.id).as_bytes())?;
-        std::thread::sleep(Duration::from_millis(6));
-        self.toy.run(work)
-    }
-}
-
-/// 120 tasks in three layers, and one that gathers all.
+/// 120 tasks in three layers, which write down, outside of the results, that they begin; and one that gathers all.
 fn tasks(log: &Path) -> Vec<Task> {
     let mut tasks: Vec<Task> = Vec::new();
     for layer in 0..3_u64 {
@@ -44,7 +29,13 @@ fn tasks(log: &Path) -> Vec<Task> {
             };
             let toy = Toy { salt: 40 * layer + k, id: format!("l{layer}/{k}"), odd: true, ..Toy::default() };
             let mut task = toy.clone().task(&toy.id, inputs);
-            task.job = Arc::new(Telling { toy, log: log.to_string_lossy().into_owned() });
+            let log = log.to_owned();
+            task.job = Arc::new(move |work: &Work<'_>| {
+                let mut log = fs::File::options().create(true).append(true).open(&log)?;
+                log.write_all(format!("{}\n", toy.id).as_bytes())?;
+                std::thread::sleep(Duration::from_millis(6));
+                toy.run(work)
+            });
             tasks.push(task);
         }
     }

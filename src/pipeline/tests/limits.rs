@@ -11,7 +11,7 @@ use super::super::{RunOptions, Task};
 use super::toys::{
     Act, Diary, Toy, from_scratch, left_at_work, options, outcomes, result, results, run_on, run_with, toy,
 };
-use crate::job::{Made, Maker, Work};
+use crate::job::{Made, Work};
 
 /// Counts what toys at work take together.
 #[derive(Default)]
@@ -20,26 +20,18 @@ struct Scale {
     most: AtomicU64,
 }
 
-struct Heavy {
-    bytes: u64,
-    scale: Arc<Scale>,
-}
-
-impl Maker for Heavy {
-    fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let now = self.scale.now.fetch_add(self.bytes, Ordering::SeqCst) + self.bytes;
-        self.scale.most.fetch_max(now, Ordering::SeqCst);
-        std::thread::sleep(Duration::from_millis(3));
-        self.scale.now.fetch_sub(self.bytes, Ordering::SeqCst);
-        fs::write(work.folder.join("x.txt"), "x")?;
-        Ok(Made::default())
-    }
-}
-
 fn heavy(id: &str, bytes: u64, scale: &Arc<Scale>) -> Task {
     let mut task = toy(id, bytes, vec![], &Diary::default());
     task.memory = bytes;
-    task.job = Arc::new(Heavy { bytes, scale: Arc::clone(scale) });
+    let scale = Arc::clone(scale);
+    task.job = Arc::new(move |work: &Work<'_>| {
+        let now = scale.now.fetch_add(bytes, Ordering::SeqCst) + bytes;
+        scale.most.fetch_max(now, Ordering::SeqCst);
+        std::thread::sleep(Duration::from_millis(3));
+        scale.now.fetch_sub(bytes, Ordering::SeqCst);
+        fs::write(work.folder.join("x.txt"), "x")?;
+        Ok(Made::default())
+    });
     task
 }
 

@@ -16,7 +16,7 @@ pub(in crate::pipeline) static TOYS: &[&Kind] = &[&TRACK, &ALIGN, &TRAIN, &EVALU
 static TRACK: Kind = Kind {
     name: "track",
     roles: &[role("video", Takes::One), role("markers", Takes::Optional), role("truth", Takes::Optional)],
-    parts: &[part("joints", "joints.csv", false), part("tracks", "tracks.csv", true)],
+    parts: &[Part::new("joints", "joints.csv"), Part::if_wanted("tracks", "tracks.csv")],
     revision: 1,
     keys: || vec!["joints".to_owned()],
     prepare: |options| Toy::prepare("track", options),
@@ -25,7 +25,7 @@ static TRACK: Kind = Kind {
 static ALIGN: Kind = Kind {
     name: "tie",
     roles: &[role("joints", Takes::One), role("log", Takes::One)],
-    parts: &[part("training", "training.csv", false), part("certificate", "training.sync.json", false)],
+    parts: &[Part::new("training", "training.csv"), Part::new("certificate", "training.sync.json")],
     revision: 1,
     keys: || vec!["sync".to_owned()],
     prepare: |options| Toy::prepare("tie", options),
@@ -34,7 +34,7 @@ static ALIGN: Kind = Kind {
 static TRAIN: Kind = Kind {
     name: "train",
     roles: &[role("data", Takes::Many), role("validate", Takes::AnyNumber)],
-    parts: &[part("model", "model.json", false)],
+    parts: &[Part::new("model", "model.json")],
     revision: 1,
     keys: || vec!["target".to_owned()],
     prepare: |options| Toy::prepare("train", options),
@@ -43,7 +43,7 @@ static TRAIN: Kind = Kind {
 static EVALUATE: Kind = Kind {
     name: "evaluate",
     roles: &[role("model", Takes::One), role("data", Takes::Many)],
-    parts: &[part("table", "evaluated.csv", false)],
+    parts: &[Part::new("table", "evaluated.csv")],
     revision: 1,
     keys: Vec::new,
     prepare: |options| Toy::prepare("evaluate", options),
@@ -52,7 +52,7 @@ static EVALUATE: Kind = Kind {
 static NORMALIZE: Kind = Kind {
     name: "normalize",
     roles: &[role("photo", Takes::One), role("annotation", Takes::Optional)],
-    parts: &[part("partial", "", false)],
+    parts: &[Part::new("partial", "")],
     revision: 1,
     keys: Vec::new,
     prepare: |options| Toy::prepare("normalize", options),
@@ -60,10 +60,6 @@ static NORMALIZE: Kind = Kind {
 
 const fn role(name: &'static str, takes: Takes) -> Role {
     Role { name, takes, about: "a toy's" }
-}
-
-const fn part(name: &'static str, file: &'static str, only_if_wanted: bool) -> Part {
-    Part { name, file, only_if_wanted }
 }
 
 struct Toy {
@@ -100,7 +96,7 @@ impl Prepared for Toy {
     }
 
     fn maker(self: Arc<Self>, _keys: &Keys, _demand: &Demand) -> Arc<dyn Maker> {
-        Arc::new(Nothing)
+        nothing()
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
@@ -133,12 +129,8 @@ impl Prepared for Toy {
     }
 }
 
-struct Nothing;
-
-impl Maker for Nothing {
-    fn run(&self, _work: &Work) -> anyhow::Result<Made> {
-        Ok(Made::default())
-    }
+fn nothing() -> Arc<dyn Maker> {
+    Arc::new(|_: &Work<'_>| Ok(Made::default()))
 }
 
 /// A folder with these files.
@@ -201,14 +193,7 @@ fn catalogue(options: &toml::Table) -> Result<Catalogue, OptionFault> {
             facts,
         }));
         let options = serde_json::json!({ "phantom": name });
-        tasks.push(CatalogueTask {
-            name: name.to_owned(),
-            keys,
-            options,
-            memory: 1,
-            cost_s: 1.0,
-            job: Arc::new(Nothing),
-        });
+        tasks.push(CatalogueTask { name: name.to_owned(), keys, options, memory: 1, cost_s: 1.0, job: nothing() });
     };
     for subject in ["S01", "S02"] {
         task(&format!("recordings/{subject}"), Some(subject), &["bending.mp4", "bending.csv"]);
