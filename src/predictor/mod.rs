@@ -33,15 +33,15 @@ pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Pr
 pub use jobs::answer::Answering;
 pub(crate) use jobs::answer::contact_word;
 pub use jobs::evaluate::{
-    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits,
-    evaluate, evaluate_plan, way,
+    EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits, evaluate,
+    evaluate_plan, way,
 };
 pub use jobs::kinds::AnalyseJob;
 pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan};
 pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 pub(crate) use merit::doubts::extrapolated;
-pub use merit::figures::{ByTarget, Merit};
+pub use merit::figures::{BinMerit, ByTarget, Merit};
 pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
 pub use options::commands::{EvaluateChoices, GateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use options::target::{POSTURE, Target};

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{WIDTH, three_digits};
 use crate::figure::{Bar, Chart, Item, draw_charts};
+use crate::predictor::merit::figures::BinMerit;
 
 /// Of a group's width, what its bars take.
 const TAKEN: f64 = 0.8;
@@ -35,19 +36,6 @@ pub struct BarSeries {
     pub values: Vec<Option<f64>>,
     /// A standard error, or what else the caption says, a group; may be empty.
     pub errors: Vec<Option<f64>>,
-}
-
-/// Rows whose force has a size between two values.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::predictor) struct MagnitudeBin {
-    /// The size that it begins with.
-    pub from: f64,
-    /// The size that it ends before.
-    pub to: f64,
-    /// How many rows.
-    pub rows: usize,
-    /// The RMSE of each target; none where no row is.
-    pub rmse: Vec<Option<f64>>,
 }
 
 /// Draws charts of bars, one below the other.
@@ -81,16 +69,11 @@ fn chart(bars: &Bars) -> Chart {
 }
 
 /// The RMSE of each target by the size of the force, in `unit` (`N`).
-pub(in crate::predictor) fn error_by_magnitude(
-    title: &str,
-    unit: &str,
-    targets: &[String],
-    bins: &[MagnitudeBin],
-) -> Bars {
-    let group = |bin: &MagnitudeBin| format!("{} to {} {unit}\n{} rows", plain(bin.from), plain(bin.to), bin.rows);
+pub(in crate::predictor) fn error_by_magnitude(title: &str, unit: &str, targets: &[String], bins: &[BinMerit]) -> Bars {
+    let group = |bin: &BinMerit| format!("{} to {} {unit}\n{} rows", plain(bin.from), plain(bin.to), bin.merit.rows);
     let series = |(k, name): (usize, &String)| BarSeries {
         name: name.clone(),
-        values: bins.iter().map(|bin| bin.rmse.get(k).copied().flatten()).collect(),
+        values: bins.iter().map(|bin| Some(bin.merit.rmse.0[k].1).filter(|rmse| rmse.is_finite())).collect(),
         errors: Vec::new(),
     };
     Bars {

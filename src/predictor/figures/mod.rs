@@ -15,8 +15,8 @@ mod scatter;
 #[cfg(test)]
 mod tests;
 
+pub(super) use bars::error_by_magnitude;
 pub use bars::{BarSeries, Bars, draw_bars};
-pub(super) use bars::{MagnitudeBin, error_by_magnitude};
 pub(super) use curves::{LearningSeries, Subset, best_subsets, learning_curve};
 pub(super) use modes::{Modes, draw_modes};
 pub(super) use nails::draw_nails;

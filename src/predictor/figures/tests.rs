@@ -6,6 +6,7 @@ use ndarray::{Array2, array};
 use super::*;
 use crate::figure::draw_charts;
 use crate::figure::drawn::{self, Drawn};
+use crate::predictor::merit::figures::{BinMerit, ByTarget, Merit};
 
 impl Drawn {
     /// Pixels that are not white.
@@ -213,11 +214,10 @@ fn bars_are_drawn_in_groups() {
 
 #[test]
 fn errors_are_drawn_by_the_size_of_the_force() {
-    let bin = |from: f64, to: f64, rows| MagnitudeBin {
-        from,
-        to,
-        rows,
-        rmse: vec![Some(0.2 + from / 10.0), None, Some(0.4 + from / 5.0)],
+    let bin = |from: f64, to: f64, rows| {
+        let rmse = ByTarget::new(&names(&FORCES), [0.2 + from / 10.0, f64::NAN, 0.4 + from / 5.0]);
+        let (bias, mae, r2) = (rmse.clone(), rmse.clone(), ByTarget::new(&names(&FORCES), [None; 3]));
+        BinMerit { from, to, merit: Merit { rows, not_finite: 0, rmse, bias, r2, mae } }
     };
     let bins = [bin(0.0, 0.5, 12_000), bin(0.5, 1.0, 340), bin(1.0, 2.0, 400)];
     let picture = drawn("magnitude", |png, svg| {

@@ -42,6 +42,18 @@ pub struct Merit {
     pub mae: ByTarget<f64>,
 }
 
+/// Errors of rows of a size.
+#[derive(Debug, Clone, Serialize)]
+pub struct BinMerit {
+    /// From here on.
+    pub from: f64,
+    /// Up to here.
+    pub to: f64,
+    /// Their errors.
+    #[serde(flatten)]
+    pub merit: Merit,
+}
+
 impl Merit {
     /// What to say of rows that are not scored.
     pub(in crate::predictor) fn warning(&self) -> Option<String> {

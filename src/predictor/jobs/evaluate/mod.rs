@@ -23,13 +23,13 @@ use crate::job::{Outputs, Report, Watch};
 use crate::predictor::data::{DataFile, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::merit::doubts::{doubts, outside_cone};
-use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
+use crate::predictor::merit::figures::{BinMerit, ByTarget, Merit, merit_without_cone};
 use crate::predictor::options::choices::LEVEL;
 use crate::predictor::outputs::end;
 use crate::predictor::{open_models, seen_by_intervals, seen_in_training};
 use crate::stages::{Stages, Step, left_out};
 use report::Predicted;
-pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits};
+pub use report::{EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits};
 pub use splits::way;
 
 /// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::job::Report;
 use crate::predictor::data::FileRows;
-use crate::predictor::merit::figures::{ByTarget, Merit};
+use crate::predictor::merit::figures::{BinMerit, ByTarget, Merit};
 
 /// A recording's errors.
 #[derive(Debug, Clone, Serialize)]
@@ -20,18 +20,6 @@ pub struct RecordingMerit {
     /// Its subject.
     pub subject: String,
     /// Its errors.
-    #[serde(flatten)]
-    pub merit: Merit,
-}
-
-/// Errors of rows of a size.
-#[derive(Debug, Clone, Serialize)]
-pub struct BinMerit {
-    /// From here on.
-    pub from: f64,
-    /// Up to here.
-    pub to: f64,
-    /// Their errors.
     #[serde(flatten)]
     pub merit: Merit,
 }

@@ -10,7 +10,7 @@ use crate::files::Staging;
 use crate::job::Outputs;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{
-    self, BarSeries, Bars, MagnitudeBin, WIDTH, draw_bars, draw_nails, draw_scatter, error_by_magnitude, over_time,
+    self, BarSeries, Bars, WIDTH, draw_bars, draw_nails, draw_scatter, error_by_magnitude, over_time,
 };
 use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted, Splits};
 use crate::predictor::jobs::evaluate::splits::way;
@@ -65,18 +65,8 @@ fn evaluation_pictures(
         staging.draw("scatter", |png, svg| draw_scatter(&drawn, title, png, svg))?,
     ];
     if let Some(found) = &report.by_magnitude {
-        let bins: Vec<MagnitudeBin> = found
-            .bins
-            .iter()
-            .map(|bin| MagnitudeBin {
-                from: bin.from,
-                to: bin.to,
-                rows: bin.merit.rows,
-                rmse: bin.merit.rmse.0.iter().map(|(_, rmse)| rmse.is_finite().then_some(*rmse)).collect(),
-            })
-            .collect();
         let unit = if found.of.ends_with("_deg") { "degrees" } else { "N" };
-        let bars = error_by_magnitude(title, unit, shown.data.targets(), &bins);
+        let bars = error_by_magnitude(title, unit, shown.data.targets(), &found.bins);
         pictures.push(staging.draw("by-magnitude", |png, svg| draw_bars(&[bars], png, svg))?);
     }
     if let Some(found) = &report.held_out {
