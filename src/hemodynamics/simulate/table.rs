@@ -8,11 +8,6 @@ use crate::hemodynamics::given::{BLOOD, PRESSED, TIME, state_columns};
 use crate::hemodynamics::{HemodynamicsError, Response};
 use crate::table::{Column, TableWriter, Value};
 
-/// The inputs in the order of their columns.
-fn inputs_pa(inputs: &Inputs) -> [f64; 4] {
-    [inputs.proximal_pa, inputs.distal_pa, inputs.upstream_pa, inputs.downstream_pa]
-}
-
 /// Writes the table that is to stand at `path` to `at`.
 pub(super) fn write(
     parameters: &Parameters,
@@ -47,7 +42,8 @@ pub(super) fn write(
         cells.extend((0..=units).map(|j| Value::Number(response.velocity_mps(parameters, row, j))));
         cells.extend((0..units).map(|i| Value::Number(response.volts[row * units + i])));
         if let Some(loads) = loads {
-            cells.extend(inputs_pa(&loads.at(response.times_s[row])).map(Value::Number));
+            let Inputs { proximal_pa, distal_pa, upstream_pa, downstream_pa } = loads.at(response.times_s[row]);
+            cells.extend([proximal_pa, distal_pa, upstream_pa, downstream_pa].map(Value::Number));
         }
         write(&cells);
     })?;

@@ -147,7 +147,8 @@ pub(in crate::pipeline) fn retire(store: &Store, hashes: &Hashes, stray: &Record
     }
     // Only where nothing else is in it.
     let _ = fs::remove_dir(&folder);
-    store.remove_record(&stray.task).map_err(io_fault(&store.record_place(&stray.task)))?;
+    let record = store.record_place(&stray.task);
+    fs::remove_file(&record).map_err(io_fault(&record))?;
     Ok(warnings)
 }
 

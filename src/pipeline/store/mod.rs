@@ -99,10 +99,6 @@ impl Store {
         read_record(&self.record_place(id)).filter(|record| record.task == id)
     }
 
-    pub(super) fn remove_record(&self, id: &str) -> io::Result<()> {
-        fs::remove_file(self.record_place(id))
-    }
-
     /// Why a task failed when it was tried last.
     pub(super) fn failure(&self, id: &str) -> Option<FailureNote> {
         let text = fs::read(self.failures().join(file_name(id))).ok()?;

@@ -126,12 +126,6 @@ impl Answering {
         self.voices.iter().any(|voice| voice.buffer.is_some())
     }
 
-    /// Where in an answer the angle is that the gate decides.
-    #[must_use]
-    pub fn gated_angle(&self) -> Option<usize> {
-        self.gate.as_ref().map(|gated| gated.angle)
-    }
-
     /// Options that are of use to a gate alone, ..
     pub(crate) const GATES: [&str; 3] = ["f_min", "theta_touch", "hysteresis"];
     /// .. and why they are of none.
@@ -203,7 +197,7 @@ impl Answering {
     /// The angle that theta_touch stands for: the posture model's errors say nothing of it.
     #[must_use]
     pub fn ruled(&self, contact: Option<Contact>) -> Option<usize> {
-        self.gated_angle().filter(|_| contact == Some(Contact::Touch))
+        self.gate.as_ref().filter(|_| contact == Some(Contact::Touch)).map(|gated| gated.angle)
     }
 
     /// How many rows lay outside of what a model was trained on.

@@ -108,10 +108,7 @@ pub(in crate::tradeoff) fn write_table(rows: &[&Row], staging: &Staging) -> anyh
         let last = [&low_s, &high_s, &repeats, &knee, &default, &peer];
         writer.write_record(first.into_iter().chain(last.map(String::as_str)))?;
     }
-    write_file("tradeoff.csv", &writer.into_inner().context("tradeoff.csv")?, staging)
-}
-
-pub(in crate::tradeoff) fn write_file(name: &str, bytes: &[u8], staging: &Staging) -> anyhow::Result<()> {
-    let place = staging.place(name)?;
+    let bytes = writer.into_inner().context("tradeoff.csv")?;
+    let place = staging.place("tradeoff.csv")?;
     std::fs::write(&place, bytes).with_context(|| place.display().to_string())
 }
