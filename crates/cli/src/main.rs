@@ -233,10 +233,6 @@ impl Common {
         stages.iter().for_each(|stage| self.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s)));
     }
 
-    fn say_left_out(&self, left_out: &[String]) {
-        left_out.iter().for_each(|what| self.say(&format!("left out: {what}")));
-    }
-
     fn warn(&self, warnings: &[String]) {
         if !self.quiet {
             for warning in warnings {

@@ -118,7 +118,7 @@ pub(super) fn run<P: Into<Plan>, F: Serialize>(
     say(common, &report);
     if common.verbose {
         common.say_stages(&report.stages);
-        common.say_left_out(&report.left_out);
+        report.left_out.iter().for_each(|what| common.say(&format!("left out: {what}")));
     }
     let look = report.pictures.first().or(request.result.as_ref());
     let look = look.map_or(String::new(), |look| format!("; look at {}", look.display()));

@@ -54,9 +54,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<Outcome> {
     }
     let out = args.out.as_deref().context("--out is needed")?;
     let stop = args.common.start()?;
-    for warning in &plan.warnings {
-        args.common.warn(std::slice::from_ref(warning));
-    }
+    args.common.warn(&plan.warnings);
     let options = RunOptions {
         threads: args.common.threads.map_or_else(memory::threads, usize::from),
         memory: args.memory.unwrap_or_else(memory::free),
