@@ -10,7 +10,7 @@ use super::predictor::switch;
 use super::{align, hemodynamics, photos, posture, predictor};
 use crate::job::Interrupted;
 use crate::phantom::video::Preset;
-use crate::tradeoff::measure::scenes::{self, Wanted};
+use crate::tradeoff::measure::scenes;
 use crate::tradeoff::measure::timing::Effort;
 
 /// On what and how is measured.
@@ -58,11 +58,8 @@ impl Plan {
             (_, Some((input, _))) => input.display().to_string(),
             (Job::Photos, None) => format!("seed {seed}: {} subjects", self.subjects),
             (Job::Posture, None) => {
-                format!(
-                    "seed {seed}: {} {} s",
-                    format!("{:?}", self.preset).to_lowercase(),
-                    scenes::seconds(self.preset, &self.effort)
-                )
+                let preset = format!("{:?}", self.preset).to_lowercase();
+                format!("seed {seed}: {preset} {} s", scenes::seconds(self))
             }
             (Job::Align, None) => format!("seed {seed}: {} s", self.seconds),
             (Job::Predictor, None) => format!("seed {seed}: two spirals and random movement"),
@@ -80,7 +77,7 @@ impl Plan {
                 let (set, truth) = (set.to_owned(), truth.to_owned());
                 Ok(photos::Settings { set, truth, small: None, effort: self.effort.clone() })
             }
-            None => scenes::photos(&self.wanted(), self.subjects, folder),
+            None => scenes::photos(self, folder),
         }
     }
 
@@ -90,8 +87,8 @@ impl Plan {
     /// A scene that can't be made.
     pub fn posture(&self, folder: &Path) -> anyhow::Result<posture::Settings> {
         match self.given() {
-            Some((input, truth)) => Ok(scenes::posture_of(input, truth.to_owned(), &self.wanted())),
-            None => scenes::posture(&self.wanted(), self.preset, folder),
+            Some((input, truth)) => Ok(scenes::posture_of(input, truth.to_owned(), self)),
+            None => scenes::posture(self, folder),
         }
     }
 
@@ -101,8 +98,8 @@ impl Plan {
     /// A scene that can't be made.
     pub fn align(&self, folder: &Path) -> anyhow::Result<align::Settings> {
         match self.given() {
-            Some((input, truth)) => Ok(scenes::align_of(input, truth.to_owned(), &self.wanted())),
-            None => scenes::align(&self.wanted(), self.seconds, folder),
+            Some((input, truth)) => Ok(scenes::align_of(input, truth.to_owned(), self)),
+            None => scenes::align(self, folder),
         }
     }
 
@@ -112,8 +109,8 @@ impl Plan {
     /// A scene that can't be made, a folder without recordings.
     pub fn predictor(&self, folder: &Path) -> anyhow::Result<predictor::Settings> {
         match self.given() {
-            Some((train, test)) => scenes::predictor_of(train, test, &self.wanted()),
-            None => scenes::predictor(&self.wanted(), folder),
+            Some((train, test)) => scenes::predictor_of(train, test, self),
+            None => scenes::predictor(self, folder),
         }
     }
 
@@ -123,17 +120,13 @@ impl Plan {
     /// A scene that can't be made, a folder without recordings.
     pub fn switch(&self, folder: &Path) -> anyhow::Result<switch::Settings> {
         match self.given() {
-            Some((train, test)) => scenes::switch_of(train, test, &self.wanted()),
-            None => scenes::switch(&self.wanted(), folder),
+            Some((train, test)) => scenes::switch_of(train, test, self),
+            None => scenes::switch(self, folder),
         }
     }
 
     fn given(&self) -> Option<(&Path, &Path)> {
         self.input.as_ref().map(|(input, truth)| (input.as_path(), truth.as_path()))
-    }
-
-    fn wanted(&self) -> Wanted {
-        Wanted { seed: self.seed, effort: self.effort.clone() }
     }
 
     /// Measures and judges one job; `others` are those of [`Plan::others`].

@@ -9,8 +9,8 @@ use crate::phantom::nail::Pose;
 use crate::phantom::photos::{PhotoOptions, write};
 use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
-use crate::phantom::video::{self, Preset, Scene, VideoOptions};
-use crate::tradeoff::measure::timing::Effort;
+use crate::phantom::video::{self, Scene, VideoOptions};
+use crate::tradeoff::all::Plan;
 use crate::tradeoff::predictor::switch;
 use crate::tradeoff::{align, photos, posture, predictor};
 
@@ -18,16 +18,10 @@ const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Po
 /// Width and height of photographs of nails of 20 to 30 px.
 const SMALL: (u32, u32) = (64, 48);
 
-/// How scenes are made and measured.
-#[derive(Debug, Clone)]
-pub(in crate::tradeoff) struct Wanted {
-    pub(in crate::tradeoff) seed: u64,
-    pub(in crate::tradeoff) effort: Effort,
-}
-
-/// Photographs of `subjects`, and small ones.
-pub(in crate::tradeoff) fn photos(wanted: &Wanted, subjects: u32, folder: &Path) -> anyhow::Result<photos::Settings> {
-    let options = PhotoOptions { seed: wanted.seed, subjects, poses: POSES.to_vec(), ..PhotoOptions::default() };
+/// Photographs, and small ones.
+pub(in crate::tradeoff) fn photos(plan: &Plan, folder: &Path) -> anyhow::Result<photos::Settings> {
+    let options =
+        PhotoOptions { seed: plan.seed, subjects: plan.subjects, poses: POSES.to_vec(), ..PhotoOptions::default() };
     write(&options, folder)?;
     let small = folder.join("small");
     write(&PhotoOptions { width: SMALL.0, height: SMALL.1, ..options }, &small)?;
@@ -35,37 +29,33 @@ pub(in crate::tradeoff) fn photos(wanted: &Wanted, subjects: u32, folder: &Path)
         set: folder.join("photos"),
         truth: folder.join("truth"),
         small: Some((small.join("photos"), small.join("truth"))),
-        effort: wanted.effort.clone(),
+        effort: plan.effort.clone(),
     })
 }
 
-/// How long the video of `preset` is.
-pub(in crate::tradeoff) fn seconds(preset: Preset, effort: &Effort) -> f64 {
-    let whole = VideoOptions::new(preset).seconds;
-    if effort.quick { 0.2 * whole } else { whole }
+/// How long the video of the plan's preset is.
+pub(in crate::tradeoff) fn seconds(plan: &Plan) -> f64 {
+    let whole = VideoOptions::new(plan.preset).seconds;
+    if plan.effort.quick { 0.2 * whole } else { whole }
 }
 
-/// A video of `preset`.
-pub(in crate::tradeoff) fn posture(
-    wanted: &Wanted,
-    preset: Preset,
-    folder: &Path,
-) -> anyhow::Result<posture::Settings> {
-    let seconds = seconds(preset, &wanted.effort);
-    let options = VideoOptions { seed: wanted.seed, seconds, ..VideoOptions::new(preset) };
+/// That video.
+pub(in crate::tradeoff) fn posture(plan: &Plan, folder: &Path) -> anyhow::Result<posture::Settings> {
+    let options = VideoOptions { seed: plan.seed, seconds: seconds(plan), ..VideoOptions::new(plan.preset) };
     video::write(&Scene::new(options)?, folder)?;
-    Ok(posture_of(folder, folder.join("truth"), wanted))
+    Ok(posture_of(folder, folder.join("truth"), plan))
 }
 
 /// A folder with `video.mp4` and `markers.toml`.
-pub(in crate::tradeoff) fn posture_of(folder: &Path, truth: PathBuf, wanted: &Wanted) -> posture::Settings {
+pub(in crate::tradeoff) fn posture_of(folder: &Path, truth: PathBuf, plan: &Plan) -> posture::Settings {
     let [video, markers] = ["video.mp4", "markers.toml"].map(|name| folder.join(name));
-    posture::Settings { video, markers, truth, effort: wanted.effort.clone() }
+    posture::Settings { video, markers, truth, effort: plan.effort.clone() }
 }
 
 /// A video with a clock and irregular frames, and a log, of random movement.
-pub(in crate::tradeoff) fn align(wanted: &Wanted, seconds: f64, folder: &Path) -> anyhow::Result<align::Settings> {
-    let (seed, clock, trajectory) = (wanted.seed, Clock::default(), Trajectory::Random { hz: 0.1, seed: wanted.seed });
+pub(in crate::tradeoff) fn align(plan: &Plan, folder: &Path) -> anyhow::Result<align::Settings> {
+    let Plan { seed, seconds, .. } = *plan;
+    let (clock, trajectory) = (Clock::default(), Trajectory::Random { hz: 0.1, seed });
     let log = LogOptions {
         seed,
         seconds,
@@ -77,39 +67,35 @@ pub(in crate::tradeoff) fn align(wanted: &Wanted, seconds: f64, folder: &Path) -
         VideoOptions { seed, seconds, trajectory, jitter: 0.4, clock: Some(clock), ..VideoOptions::sized(640, 360) };
     video::write(&Scene::new(video)?, folder)?;
     log::write(&LogScene::new(log)?, folder)?;
-    Ok(align_of(folder, folder.join("truth"), wanted))
+    Ok(align_of(folder, folder.join("truth"), plan))
 }
 
 /// A folder with `video.mp4`, `markers.toml` and `log.csv`.
-pub(in crate::tradeoff) fn align_of(folder: &Path, truth: PathBuf, wanted: &Wanted) -> align::Settings {
+pub(in crate::tradeoff) fn align_of(folder: &Path, truth: PathBuf, plan: &Plan) -> align::Settings {
     let [video, markers, log] = ["video.mp4", "markers.toml", "log.csv"].map(|name| folder.join(name));
-    align::Settings { video, markers, log, truth, effort: wanted.effort.clone() }
+    align::Settings { video, markers, log, truth, effort: plan.effort.clone() }
 }
 
 /// Two spirals to train on, and random movement to tell the error on.
-pub(in crate::tradeoff) fn predictor(wanted: &Wanted, folder: &Path) -> anyhow::Result<predictor::Settings> {
-    let seed = wanted.seed.wrapping_mul(3);
+pub(in crate::tradeoff) fn predictor(plan: &Plan, folder: &Path) -> anyhow::Result<predictor::Settings> {
+    let seed = plan.seed.wrapping_mul(3);
     let scenes =
         [("train/1", Protocol::Touch, 0), ("train/2", Protocol::Touch, 1), ("truth/1", Protocol::TouchRandom, 2)];
     for (name, protocol, next) in scenes {
         log::write(&LogScene::new(LogOptions::of(protocol, seed.wrapping_add(next)))?, &folder.join(name))?;
     }
-    predictor_of(&folder.join("train"), &folder.join("truth"), wanted)
+    predictor_of(&folder.join("train"), &folder.join("truth"), plan)
 }
 
 /// Folders of recordings.
-pub(in crate::tradeoff) fn predictor_of(
-    train: &Path,
-    test: &Path,
-    wanted: &Wanted,
-) -> anyhow::Result<predictor::Settings> {
-    Ok(predictor::Settings { train: recordings(train)?, test: recordings(test)?, effort: wanted.effort.clone() })
+pub(in crate::tradeoff) fn predictor_of(train: &Path, test: &Path, plan: &Plan) -> anyhow::Result<predictor::Settings> {
+    Ok(predictor::Settings { train: recordings(train)?, test: recordings(test)?, effort: plan.effort.clone() })
 }
 
 /// Presses and rest of one sensor: a recording of each to train on, four of each to choose thresholds by and to judge.
-pub(in crate::tradeoff) fn switch(wanted: &Wanted, folder: &Path) -> anyhow::Result<switch::Settings> {
-    let share = if wanted.effort.quick { 0.25 } else { 1.0 };
-    let mut seed = wanted.seed.wrapping_mul(10);
+pub(in crate::tradeoff) fn switch(plan: &Plan, folder: &Path) -> anyhow::Result<switch::Settings> {
+    let share = if plan.effort.quick { 0.25 } else { 1.0 };
+    let mut seed = plan.seed.wrapping_mul(10);
     for (name, pairs) in [("train", 1), ("test", 4)] {
         for pair in 1..=pairs {
             for (protocol, kind, seconds) in [(Protocol::Contacts, "press", 600.0), (Protocol::Rest, "rest", 3600.0)] {
@@ -119,15 +105,15 @@ pub(in crate::tradeoff) fn switch(wanted: &Wanted, folder: &Path) -> anyhow::Res
             }
         }
     }
-    switch_of(&folder.join("train"), &folder.join("test"), wanted)
+    switch_of(&folder.join("train"), &folder.join("test"), plan)
 }
 
 /// Folders of recordings; of those to be judged on, the first half by name chooses thresholds.
-pub(in crate::tradeoff) fn switch_of(train: &Path, test: &Path, wanted: &Wanted) -> anyhow::Result<switch::Settings> {
+pub(in crate::tradeoff) fn switch_of(train: &Path, test: &Path, plan: &Plan) -> anyhow::Result<switch::Settings> {
     let mut choose = recordings(test)?;
     anyhow::ensure!(choose.len() > 1, "{}: one recording can't choose thresholds and judge them", test.display());
     let judge = choose.split_off(choose.len() / 2);
-    Ok(switch::Settings { train: recordings(train)?, choose, judge, effort: wanted.effort.clone() })
+    Ok(switch::Settings { train: recordings(train)?, choose, judge, effort: plan.effort.clone() })
 }
 
 /// The tables and logs of a folder, and the logs of its folders, by name.
