@@ -42,6 +42,12 @@ fn bench() -> Bench {
     Bench::new(&files())
 }
 
+/// The study's files, one of them with other content.
+fn bench_with(name: &str, content: &str) -> Bench {
+    let others = files().into_iter().filter(|(known, _)| *known != name);
+    Bench::new(&others.chain([(name, content)]).collect::<Vec<_>>())
+}
+
 fn ids(plan: &Plan) -> Vec<&str> {
     plan.tasks.iter().map(|task| task.id.as_str()).collect()
 }
@@ -261,10 +267,7 @@ fn files_that_do_not_stand_are_told_and_stop_nothing_else() {
 
 #[test]
 fn one_recording_under_the_names_of_two_subjects_is_warned_of() {
-    let plan = |changed: &'static str, content: &'static str| {
-        let others = files().into_iter().filter(|(name, _)| *name != changed);
-        Bench::new(&others.chain([(changed, content)]).collect::<Vec<_>>()).plan(STUDY).warnings
-    };
+    let plan = |changed: &str, content: &str| bench_with(changed, content).plan(STUDY).warnings;
     let said = plan("v/S02.mp4", "1");
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("v/S01.mp4, ") && said[0].contains("v/S02.mp4: the same to the byte"), "{said:?}");
@@ -274,9 +277,7 @@ fn one_recording_under_the_names_of_two_subjects_is_warned_of() {
 
 /// The sessions are in a table of these rows.
 fn bench_of(rows: &[&str]) -> Bench {
-    let table = format!("subject,session,kind,video,log\n{}\n", rows.join("\n"));
-    let others = files().into_iter().filter(|(name, _)| *name != "sessions.csv");
-    Bench::new(&others.chain([("sessions.csv", table.as_str())]).collect::<Vec<_>>())
+    bench_with("sessions.csv", &format!("subject,session,kind,video,log\n{}\n", rows.join("\n")))
 }
 
 /// What the plan warns of then.
@@ -378,26 +379,18 @@ fn files_that_only_the_case_of_letters_leaves_out_are_warned_of() {
     }
 }
 
-/// Faults of the study with some files changed.
-fn with(name: &'static str, content: &'static str, pipeline: &str) -> Vec<String> {
-    let mut files = files();
-    files.retain(|(known, _)| *known != name);
-    files.push((name, content));
-    Bench::new(&files).faults(pipeline)
-}
-
 #[test]
 fn two_inputs_that_would_write_the_same_files_are_told() {
     let double = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\nS01,bending,v/S02.mp4,l/S02.csv\n";
     let what = "sessions.csv, line 2 and sessions.csv, line 3 would both be written to `angles/S01/bending`; add a \
                 column or a {place} that tells them apart, or choose with `where`";
-    assert_eq!(with("sessions.csv", double, STUDY)[0], format!("5:8: {what}"));
+    assert_eq!(bench_with("sessions.csv", double).faults(STUDY)[0], format!("5:8: {what}"));
     let no_place = "[inputs.v]\nfiles = \"v/*.mp4\"\n\n[stage.angles]\njob = \"track\"\nvideo = \"v\"\n";
     let found = bench().faults(no_place);
     assert!(found[0].starts_with("4:8: v/S01.mp4 and v/S02.mp4 would both be written to `angles`;"), "{found:?}");
     let odd = "subject,kind,video,log\na/b,bending,v/S01.mp4,l/S01.csv\na_b,bending,v/S02.mp4,l/S02.csv\n";
     let keyed = STUDY.replace("where = {", "keys = [\"subject\"]\nwhere = {");
-    let found = with("sessions.csv", odd, &keyed);
+    let found = bench_with("sessions.csv", odd).faults(&keyed);
     assert!(found[0].starts_with("6:8: ") && found[0].contains("differ only in characters"), "{found:?}");
 }
 
@@ -405,7 +398,7 @@ fn two_inputs_that_would_write_the_same_files_are_told() {
 fn many_inputs_of_one_name_are_told_once() {
     let rows = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\n\
         S01,bending,v/S02.mp4,l/S02.csv\nS01,bending,v/S03.mp4,l/S03.csv\n";
-    let found = with("sessions.csv", rows, STUDY);
+    let found = bench_with("sessions.csv", rows).faults(STUDY);
     assert_eq!(found.iter().filter(|fault| fault.contains("to `angles/S01/bending`")).count(), 1, "{found:?}");
 }
 
@@ -415,17 +408,17 @@ fn doubled_rows_are_told_with_their_lines() {
     let semicolons = "subject;kind;video;log\nS01;bending;v/S01.mp4;l/S01.csv\n\nS01;bending;v/S01.mp4;l/S01.csv\n";
     for double in [commas, semicolons] {
         let said = ["3:9: sessions.csv holds 1 row(s) twice: line 2 and line 4; remove one of each"];
-        assert_eq!(with("sessions.csv", double, STUDY), said);
+        assert_eq!(bench_with("sessions.csv", double).faults(STUDY), said);
     }
 }
 
 #[test]
 fn tables_that_are_empty_missing_or_lack_columns_are_told() {
     assert_eq!(
-        with("sessions.csv", "subject,kind,video,log\n", STUDY)[0],
+        bench_with("sessions.csv", "subject,kind,video,log\n").faults(STUDY)[0],
         "3:9: sessions.csv has no rows; add one for each recording"
     );
-    assert!(with("sessions.csv", "", STUDY)[0].starts_with("3:9: "));
+    assert!(bench_with("sessions.csv", "").faults(STUDY)[0].starts_with("3:9: "));
     assert!(bench().faults(&STUDY.replace("sessions.csv", "session.csv"))[0].starts_with("3:9: "));
     assert_eq!(
         bench().faults(&STUDY.replace("bending.video", "bending.vidoe")),
@@ -463,7 +456,7 @@ fn a_wanted_stage_without_anything_to_work_on_is_told_with_the_reason() {
     let none = "subject,session,kind,video,log\nS01,1,bending,,l/S01.csv\nS02,1,bending,,l/S02.csv\n";
     let what = "`sets` is wanted and has nothing to work on: its `joints` comes from `angles` (line 5), which has \
                 nothing: sessions.csv names no `video` for it (2)";
-    assert_eq!(with("sessions.csv", none, STUDY), [format!("1:11: {what}")]);
+    assert_eq!(bench_with("sessions.csv", none).faults(STUDY), [format!("1:11: {what}")]);
 }
 
 #[test]
@@ -499,8 +492,9 @@ fn options_of_what_is_generated_are_told_at_their_line() {
 fn odd_key_values_are_folders_and_empty_ones_hold_for_all() {
     let odd = "subject,session,video,log\nMüller \
                日本,1.5,v/S01.mp4,l/S01.csv\n../x,..,v/S02.mp4,l/S02.csv\n,3,v/S03.mp4,l/S03.csv\n";
-    let mut files = files();
-    files[0].1 = odd;
     let text = STUDY.replace("where = { kind = \"bending\" }\n", "").replace("[\"sets\"]", "[\"angles\"]");
-    assert_eq!(ids(&Bench::new(&files).plan(&text)), ["angles/Müller_日本/1.5", "angles/_._x/_.", "angles/_/3"]);
+    assert_eq!(
+        ids(&bench_with("sessions.csv", odd).plan(&text)),
+        ["angles/Müller_日本/1.5", "angles/_._x/_.", "angles/_/3"]
+    );
 }
