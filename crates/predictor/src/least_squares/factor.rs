@@ -119,6 +119,18 @@ impl Factor {
         let ones = basis.iter().map(|weights| dot(weights, &centred.ones)).collect();
         Self { basis, f, ones, sides }
     }
+
+    /// From ones' and the unknowns' right-hand sides to coefficients of ones and columns, in the problem's units.
+    pub(super) fn step(&self, centred: &Centred, first: f64, side: &[f64]) -> Vec<f64> {
+        let unknowns = back(&self.f, side);
+        let mut out = vec![0.0; 1 + centred.columns.len()];
+        out[0] = (first - dot(&self.ones, &unknowns)) / centred.first;
+        for (weights, by) in self.basis.iter().zip(&unknowns) {
+            out[1..].iter_mut().zip(weights).for_each(|(out, weight)| *out += weight * by);
+        }
+        out[1..].iter_mut().zip(&centred.exponents).for_each(|(out, &e)| *out = ldexp(*out, -e));
+        out
+    }
 }
 
 /// Coefficients that lie in the space of the rows, of columns over their lengths.
@@ -144,18 +156,4 @@ fn minimum_norm(centred: &Centred, pivoted: &[Column], taken: &[usize]) -> Vec<C
         }
     }
     basis
-}
-
-impl Factor {
-    /// From ones' and the unknowns' right-hand sides to coefficients of ones and columns, in the problem's units.
-    pub(super) fn step(&self, centred: &Centred, first: f64, side: &[f64]) -> Vec<f64> {
-        let unknowns = back(&self.f, side);
-        let mut out = vec![0.0; 1 + centred.columns.len()];
-        out[0] = (first - dot(&self.ones, &unknowns)) / centred.first;
-        for (weights, by) in self.basis.iter().zip(&unknowns) {
-            out[1..].iter_mut().zip(weights).for_each(|(out, weight)| *out += weight * by);
-        }
-        out[1..].iter_mut().zip(&centred.exponents).for_each(|(out, &e)| *out = ldexp(*out, -e));
-        out
-    }
 }

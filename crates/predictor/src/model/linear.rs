@@ -55,9 +55,7 @@ impl Linear {
         assert_eq!(x.len(), self.inputs(), "a row of the model's size");
         self.jacobian.clone()
     }
-}
 
-impl Linear {
     /// Of the targets from the `first` on.
     #[inline(always)]
     fn slopes(&self, first: usize) -> &[[f64; GROUP]] {
