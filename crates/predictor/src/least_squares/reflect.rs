@@ -73,45 +73,39 @@ impl Triangle {
     /// Folds a block in; the block is used up. To be called where vector instructions are allowed.
     #[inline(always)]
     pub(super) fn fold<S: Simd>(&mut self, simd: S, block: &mut [Part]) {
-        fold(simd, &mut self.r, block);
+        let columns = self.columns;
+        for j in 0..columns {
+            let (head, rest) = block.split_at_mut(j + 1);
+            let v = &head[j];
+            let below = products(simd, [v], v)[0];
+            if below == 0.0 {
+                continue;
+            }
+            let row = &mut self.r[j * columns + j..(j + 1) * columns];
+            let (diagonal, row) = row.split_first_mut().expect("a triangle's row holds its diagonal");
+            let norm = (*diagonal * *diagonal + below).sqrt();
+            let beta = if *diagonal > 0.0 { -norm } else { norm };
+            let top = *diagonal - beta;
+            *diagonal = beta;
+            // 2 / |v|^2 with v = (top, block's column).
+            let tau = -1.0 / (beta * top);
+            let mut fours = rest.chunks_exact_mut(4);
+            let mut tops = row.chunks_exact_mut(4);
+            for (four, tops) in (&mut fours).zip(&mut tops) {
+                let sums = products(simd, [&four[0], &four[1], &four[2], &four[3]], v);
+                for k in 0..4 {
+                    reflect(&mut tops[k], &mut four[k], sums[k], top, tau, v);
+                }
+            }
+            for (part, first) in fours.into_remainder().iter_mut().zip(tops.into_remainder()) {
+                let sum = products(simd, [&*part], v)[0];
+                reflect(first, part, sum, top, tau, v);
+            }
+        }
     }
 
     pub(super) fn into_array(self) -> Array2<f64> {
         Array2::from_shape_vec((self.columns, self.columns), self.r).expect("as many values as were asked for")
-    }
-}
-
-/// Folds one block into the triangle `r`; the block is used up.
-#[inline(always)]
-fn fold<S: Simd>(simd: S, r: &mut [f64], block: &mut [Part]) {
-    let columns = block.len();
-    for j in 0..columns {
-        let (head, rest) = block.split_at_mut(j + 1);
-        let v = &head[j];
-        let below = products(simd, [v], v)[0];
-        if below == 0.0 {
-            continue;
-        }
-        let row = &mut r[j * columns + j..(j + 1) * columns];
-        let (diagonal, row) = row.split_first_mut().expect("a triangle's row holds its diagonal");
-        let norm = (*diagonal * *diagonal + below).sqrt();
-        let beta = if *diagonal > 0.0 { -norm } else { norm };
-        let top = *diagonal - beta;
-        *diagonal = beta;
-        // 2 / |v|^2 with v = (top, block's column).
-        let tau = -1.0 / (beta * top);
-        let mut fours = rest.chunks_exact_mut(4);
-        let mut tops = row.chunks_exact_mut(4);
-        for (four, tops) in (&mut fours).zip(&mut tops) {
-            let sums = products(simd, [&four[0], &four[1], &four[2], &four[3]], v);
-            for k in 0..4 {
-                reflect(&mut tops[k], &mut four[k], sums[k], top, tau, v);
-            }
-        }
-        for (part, first) in fours.into_remainder().iter_mut().zip(tops.into_remainder()) {
-            let sum = products(simd, [&*part], v)[0];
-            reflect(first, part, sum, top, tau, v);
-        }
     }
 }
 
