@@ -6,8 +6,8 @@
 
 use ndarray::{Array2, ArrayView1, ArrayView2, Axis, concatenate};
 
-use super::solve::norm;
 use crate::Dataset;
+use crate::algebra::small::norm;
 use crate::evaluate::sum::{exact_mean, largest, power_of_two};
 use crate::least_squares::{rounding, triangle};
 

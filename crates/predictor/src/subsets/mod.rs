@@ -31,8 +31,9 @@ pub use self::layout::{
 };
 
 use self::compress::Compressed;
-use self::solve::{norm, solve};
+use self::solve::solve;
 use crate::Dataset;
+use crate::algebra::small::norm;
 
 /// The most photodiodes whose every subset is looked at: 65 535 subsets.
 pub const MOST_INPUTS: usize = 16;

@@ -3,7 +3,7 @@
 //!
 //! Rank: as least squares decides it, each column measured by how much of it may be rounding.
 
-use crate::algebra::small::{back, pivot, triangulate};
+use crate::algebra::small::{back, norm, pivot, triangulate};
 
 /// What came of some columns.
 pub(super) struct Solved {
@@ -38,9 +38,4 @@ pub(super) fn solve(columns: &[&[f64]], targets: &[&[f64]], limits: &[f64]) -> S
         solved.left.push(norm(&target[count..]));
     }
     solved
-}
-
-/// The norm. Columns are scaled; nothing overflows.
-pub(super) fn norm(column: &[f64]) -> f64 {
-    column.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
