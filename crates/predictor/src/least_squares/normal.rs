@@ -3,6 +3,7 @@
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Slice, concatenate};
 
+use super::problem::{check_finite, check_rows};
 use super::{LeastSquares, LeastSquaresFault};
 
 pub(super) fn normal(
@@ -10,18 +11,9 @@ pub(super) fn normal(
     targets: ArrayView2<'_, f64>,
 ) -> Result<LeastSquares, LeastSquaresFault> {
     let (rows, columns) = design.dim();
-    if targets.nrows() != rows {
-        return Err(LeastSquaresFault::Rows { design: rows, targets: targets.nrows() });
-    }
-    let finite = |values: ArrayView2<'_, f64>, target| match values.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        Some(((row, column), _)) => Err(LeastSquaresFault::NotFinite { target, row, column }),
-        None => Ok(()),
-    };
-    finite(design, false)?;
-    finite(targets, true)?;
-    let (Some(centre), Some(_)) = (design.mean_axis(Axis(0)), targets.mean_axis(Axis(0))) else {
-        return Err(LeastSquaresFault::NoRows);
-    };
+    check_rows(design, targets)?;
+    check_finite(design, targets)?;
+    let centre = design.mean_axis(Axis(0)).expect("there are rows");
     let ones = Array2::ones((rows, 1));
     let z = concatenate(Axis(1), &[design, ones.view()]).expect("both have the design's rows");
     let inverse = inverse(z.t().dot(&z))?;

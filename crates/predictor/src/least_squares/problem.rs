@@ -46,12 +46,7 @@ impl<'a> Problem<'a> {
     /// Rows x columns, rows x targets.
     pub(super) fn new(design: ArrayView2<'a, f64>, targets: ArrayView2<'a, f64>) -> Result<Self, LeastSquaresFault> {
         let (rows, columns) = design.dim();
-        if targets.nrows() != rows {
-            return Err(LeastSquaresFault::Rows { design: rows, targets: targets.nrows() });
-        }
-        if rows == 0 {
-            return Err(LeastSquaresFault::NoRows);
-        }
+        check_rows(design, targets)?;
         let (from, to) = (standard(design), standard(targets));
         let mut problem = Self {
             rows,
@@ -88,7 +83,8 @@ impl<'a> Problem<'a> {
             problem.centres.push(mean);
         }
         if problem.centres.iter().any(|centre| !centre.is_finite()) {
-            return Err(not_finite(design, targets));
+            check_finite(design, targets)?;
+            unreachable!("the mean of finite numbers below 1 is finite");
         }
         Ok(problem)
     }
@@ -185,14 +181,23 @@ fn centre(high: &mut Part, low: &mut Part, shift: Shift, rows: usize) {
     low[rows..].fill(0.0);
 }
 
-/// Which value it is.
-fn not_finite(design: ArrayView2<'_, f64>, targets: ArrayView2<'_, f64>) -> LeastSquaresFault {
+/// Whether there are rows, as many of both.
+pub(super) fn check_rows(design: ArrayView2<'_, f64>, targets: ArrayView2<'_, f64>) -> Result<(), LeastSquaresFault> {
+    match (design.nrows(), targets.nrows()) {
+        (design, targets) if design != targets => Err(LeastSquaresFault::Rows { design, targets }),
+        (0, _) => Err(LeastSquaresFault::NoRows),
+        _ => Ok(()),
+    }
+}
+
+/// Which value is not finite, if any.
+pub(super) fn check_finite(design: ArrayView2<'_, f64>, targets: ArrayView2<'_, f64>) -> Result<(), LeastSquaresFault> {
     for (values, target) in [(design, false), (targets, true)] {
         if let Some(((row, column), _)) = values.indexed_iter().find(|(_, v)| !v.is_finite()) {
-            return LeastSquaresFault::NotFinite { target, row, column };
+            return Err(LeastSquaresFault::NotFinite { target, row, column });
         }
     }
-    unreachable!("the mean of finite numbers below 1 is finite")
+    Ok(())
 }
 
 /// Largest magnitudes and sums of inputs and targets.
