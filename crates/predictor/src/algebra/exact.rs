@@ -66,6 +66,12 @@ fn split(a: f64) -> (f64, f64) {
 impl Long {
     pub(crate) const ZERO: Self = Self(0.0, 0.0);
 
+    /// a + b exactly.
+    pub(crate) fn of(a: f64, b: f64) -> Self {
+        let (high, low) = two_sum(a, b);
+        Self(high, low)
+    }
+
     pub(crate) fn plus(self, other: Self) -> Self {
         let (sum, error) = two_sum(self.0, other.0);
         let (high, low) = two_sum(self.1, other.1);
@@ -77,8 +83,7 @@ impl Long {
     pub(crate) fn times(self, other: Self) -> Self {
         let product = self.0 * other.0;
         let error = self.0.mul_add(other.0, -product) + (self.0 * other.1 + self.1 * other.0);
-        let (high, low) = two_sum(product, error);
-        Self(high, low)
+        Self::of(product, error)
     }
 
     pub(crate) fn negative(self) -> Self {
@@ -89,8 +94,7 @@ impl Long {
     pub(crate) fn over(self, by: f64) -> Self {
         let first = self.0 / by;
         let rest = (-first).mul_add(by, self.0) + self.1;
-        let (high, low) = two_sum(first, rest / by);
-        Self(high, low)
+        Self::of(first, rest / by)
     }
 
     /// The nearest `f64`.

@@ -3,6 +3,8 @@
 //! In: finite numbers of any size, in a fixed order. Out: the same bits wherever it runs. Sums carry what each addition
 //! rounds off (Knuth's two-sum; The Art of Computer Programming 2, 4.2.2), scales are powers of two and round nothing.
 
+use crate::algebra::exact::two_sum;
+
 /// A sum that carries what rounding takes away.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Sum {
@@ -12,10 +14,9 @@ pub(crate) struct Sum {
 
 impl Sum {
     pub(crate) fn add(&mut self, value: f64) {
-        let sum = self.high + value;
-        let taken = sum - self.high;
-        self.low += (self.high - (sum - taken)) + (value - taken);
+        let (sum, error) = two_sum(self.high, value);
         self.high = sum;
+        self.low += error;
     }
 
     pub(crate) fn value(self) -> f64 {

@@ -54,10 +54,7 @@ pub(super) fn add(sums: &mut Lanes, part: &Part) {
 
 /// All lanes together.
 pub(super) fn total(sums: &Lanes) -> Long {
-    (0..LANES).fold(Long::ZERO, |sum, lane| {
-        let (high, low) = two_sum(sums.0[lane], sums.1[lane]);
-        sum.plus(Long(high, low))
-    })
+    (0..LANES).fold(Long::ZERO, |sum, lane| sum.plus(Long::of(sums.0[lane], sums.1[lane])))
 }
 
 /// A part in the machine's vectors.

@@ -34,13 +34,6 @@ pub(super) fn survey(values: &[f64], columns: usize) -> Survey {
     let lanes = |column: usize| (column..wide).step_by(columns.max(1));
     Survey {
         largest: (0..columns).map(|j| lanes(j).fold(0.0, |all: f64, k| all.max(most[k]))).collect(),
-        sums: (0..columns)
-            .map(|j| {
-                lanes(j).fold(Long::ZERO, |sum, k| {
-                    let (high, low) = two_sum(high[k], low[k]);
-                    sum.plus(Long(high, low))
-                })
-            })
-            .collect(),
+        sums: (0..columns).map(|j| lanes(j).fold(Long::ZERO, |sum, k| sum.plus(Long::of(high[k], low[k])))).collect(),
     }
 }
