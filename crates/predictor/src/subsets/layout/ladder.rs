@@ -51,11 +51,6 @@ impl<'a> Ladder<'a> {
         &self.rungs[self.height]
     }
 
-    /// The factor's rows of the places taken.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.rungs[1..=self.height].iter().map(|rung| rung.l.as_slice())
-    }
-
     /// Takes a place.
     pub(super) fn push(&mut self, place: usize) {
         self.push_for(place, 0);
@@ -112,14 +107,6 @@ impl<'a> Ladder<'a> {
         mean_cost(self.problem.criterion, &self.top().q)
     }
 
-    pub(super) fn costs_of_persons(&self) -> Vec<f64> {
-        self.top().q.chunks(self.problem.columns).map(|own| mean_cost(self.problem.criterion, own)).collect()
-    }
-
-    pub(super) fn explained(&self) -> &[f64] {
-        &self.top().q
-    }
-
     /// Minus the mean over persons of the log of the determinant: the less, the better (D-optimal).
     pub(super) fn minus_log_determinant(&self) -> f64 {
         -self.top().log_determinant.iter().sum::<f64>() / self.problem.persons as f64
@@ -174,7 +161,7 @@ impl<'a> Ladder<'a> {
         let mut q = self.top().q.clone();
         // Columns explained so far, for each k; what each person adds comes one person after the other.
         let mut all_q = vec![0.0; (m + 1) * q.len()];
-        let taken: Vec<&[f64]> = self.rows().collect();
+        let taken = &self.rungs[1..=self.height];
         let mut own_rows = vec![0.0; m * m];
         for person in 0..problem.persons {
             let row = person * n;
@@ -182,7 +169,7 @@ impl<'a> Ladder<'a> {
             let gather = |from: &[f64], start: usize| others.iter().map(|&k| from[start + k]).collect::<Vec<f64>>();
             let mut d = gather(&self.top().d, row);
             let mut b: Vec<Vec<f64>> = of.clone().map(|column| gather(&self.top().b, column * n)).collect();
-            let known: Vec<Vec<f64>> = taken.iter().map(|l| gather(l, row)).collect();
+            let known: Vec<Vec<f64>> = taken.iter().map(|rung| gather(&rung.l, row)).collect();
             for i in (0..m).rev() {
                 if d[i] > DEPENDENT {
                     let root = d[i].sqrt();
@@ -234,13 +221,13 @@ impl LayoutProblem {
     /// What places cost each person.
     #[must_use]
     pub fn costs_of_persons(&self, places: &[usize]) -> Vec<f64> {
-        self.ladder(places).costs_of_persons()
+        self.ladder(places).top().q.chunks(self.columns).map(|own| mean_cost(self.criterion, own)).collect()
     }
 
     /// What each column's places explain, q, by person.
     #[must_use]
     pub fn explained(&self, places: &[usize]) -> Vec<Vec<f64>> {
-        self.ladder(places).explained().chunks(self.columns).map(<[f64]>::to_vec).collect()
+        self.ladder(places).top().q.chunks(self.columns).map(<[f64]>::to_vec).collect()
     }
 
     fn ladder(&self, places: &[usize]) -> Ladder<'_> {
