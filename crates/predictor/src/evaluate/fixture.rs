@@ -5,6 +5,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::splits::baseline::nearest;
 use crate::{Dataset, Recording};
 
 /// One recording: y = row, x = 2 row + 1.
@@ -55,13 +56,7 @@ impl Nearest {
     }
 
     pub(crate) fn predict(&self, data: &Dataset) -> Array2<f64> {
-        let mut out = Array2::zeros(data.y().dim());
-        for (x, mut out) in data.x().rows().into_iter().zip(out.rows_mut()) {
-            let far = |row: usize| -> f64 { self.0.x().row(row).iter().zip(x).map(|(a, b)| (a - b).powi(2)).sum() };
-            let near = (0..self.0.rows()).min_by(|&a, &b| far(a).total_cmp(&far(b))).unwrap();
-            out.assign(&self.0.y().row(near));
-        }
-        out
+        nearest(&self.0, data)
     }
 }
 

@@ -13,7 +13,7 @@ pub(super) fn mean(train: &Dataset, test: &Dataset) -> Array2<f64> {
 
 /// What the nearest training row had, by the mean squared distance of the inputs that both have; of equals the first,
 /// NaN without any. It remembers all, so rows nearby in time flatter it most.
-pub(super) fn nearest(train: &Dataset, test: &Dataset) -> Array2<f64> {
+pub(in crate::evaluate) fn nearest(train: &Dataset, test: &Dataset) -> Array2<f64> {
     let near: Vec<Option<usize>> = (0..test.rows())
         .into_par_iter()
         .map(|row| {

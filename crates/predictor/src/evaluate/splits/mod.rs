@@ -4,7 +4,7 @@
 //! out, its 95 % interval and whether it surely beats the mean; [`leaks`]: what looks good by shuffled rows and is no
 //! better than the mean with whole paths held out. The mean and the nearest row are always among the methods.
 
-mod baseline;
+pub(super) mod baseline;
 mod bootstrap;
 #[cfg(test)]
 mod tests;
