@@ -20,6 +20,13 @@ pub struct Recording {
     pub rows: Range<usize>,
 }
 
+impl Recording {
+    /// Of no session and nobody that are known.
+    pub(crate) fn of(name: impl Into<String>, rows: Range<usize>) -> Self {
+        Self { name: name.into(), session: String::new(), subject: String::new(), rows }
+    }
+}
+
 /// Voltages and targets. Every value is finite (but for cells that are hidden, [`Dataset::with_hidden`]), every row
 /// belongs to one recording, recordings follow each other.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,9 +135,8 @@ impl Dataset {
         step_s: f64,
     ) -> Result<Self, DatasetFault> {
         let n = x.nrows();
-        let one = Recording { name: String::new(), session: String::new(), subject: String::new(), rows: 0..n };
         let time_s = (0..n).map(|k| k as f64 * step_s).collect();
-        Self::new(inputs, targets, time_s, x, y, vec![one])
+        Self::new(inputs, targets, time_s, x, y, vec![Recording::of("", 0..n)])
     }
 
     /// How many rows.

@@ -496,13 +496,7 @@ mod tests {
 
     fn dataset([x, y]: [Array2<f64>; 2]) -> (Dataset, Vec<Range<usize>>) {
         let parts: Vec<Range<usize>> = (0..x.nrows() / EACH).map(|k| k * EACH..(k + 1) * EACH).collect();
-        let recording = |(k, rows): (usize, &Range<usize>)| Recording {
-            name: k.to_string(),
-            session: String::new(),
-            subject: String::new(),
-            rows: rows.clone(),
-        };
-        let recordings = parts.iter().enumerate().map(recording).collect();
+        let recordings = (0..).zip(&parts).map(|(k, rows)| Recording::of(k.to_string(), rows.clone())).collect();
         let inputs = (1..=x.ncols()).map(|k| format!("P{k}")).collect();
         let targets = ["Fx_N", "Fy_N", "Fz_N"].map(str::to_owned).to_vec();
         (Dataset::with_hidden(inputs, targets, vec![0.0; x.nrows()], x, y, recordings).unwrap(), parts)

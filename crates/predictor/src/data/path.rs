@@ -166,13 +166,7 @@ mod tests {
                 (0..3).for_each(|target| y[[start + k, target]] = path(t)[target]);
                 time.push(t);
             }
-            let name = format!("r{}", recordings.len());
-            recordings.push(Recording {
-                name,
-                session: String::new(),
-                subject: String::new(),
-                rows: start..start + rows,
-            });
+            recordings.push(Recording::of(format!("r{}", recordings.len()), start..start + rows));
             start += rows;
         }
         let names = ["Fx_N", "Fy_N", "Fz_N"].map(str::to_owned).to_vec();

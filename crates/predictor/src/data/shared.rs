@@ -97,9 +97,8 @@ mod tests {
             let k = (times[row] * 25.0).round() as usize;
             (1.0 + column as f64) * value(times[row]) + 0.01 * noise(k + 5000 * column)
         });
-        let one = Recording { name: "r".into(), session: String::new(), subject: String::new(), rows: 0..n };
-        let names = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<String>>();
-        Dataset::new(names(&["P1", "P2"]), names(&["F"]), times.to_vec(), x, Array2::zeros((n, 1)), vec![one]).unwrap()
+        let (inputs, one) = (["P1", "P2"].map(str::to_owned).to_vec(), vec![Recording::of("r", 0..n)]);
+        Dataset::new(inputs, vec!["F".into()], times.to_vec(), x, Array2::zeros((n, 1)), one).unwrap()
     }
 
     fn spiral(t: f64) -> f64 {

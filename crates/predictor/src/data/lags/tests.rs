@@ -9,13 +9,7 @@ fn set(parts: &[&[f64]], x: impl Fn(f64, usize) -> f64) -> Dataset {
     let mut recordings = Vec::new();
     for (k, part) in parts.iter().enumerate() {
         let start = recordings.last().map_or(0, |one: &Recording| one.rows.end);
-        let name = format!("s{k}");
-        recordings.push(Recording {
-            name,
-            session: String::new(),
-            subject: String::new(),
-            rows: start..start + part.len(),
-        });
+        recordings.push(Recording::of(format!("s{k}"), start..start + part.len()));
     }
     let values = Array2::from_shape_fn((time.len(), 2), |(row, column)| x(time[row], column));
     let y = Array2::from_shape_fn((time.len(), 1), |(row, _)| row as f64);
@@ -149,10 +143,9 @@ proptest! {
 #[test]
 fn rows_without_times_are_refused_as_such() {
     let x = Array2::from_shape_fn((9, 1), |(row, _)| row as f64);
-    let names = || (vec!["P1".to_owned()], vec!["J2_deg".to_owned()]);
-    let ((inputs, targets), one) =
-        (names(), |rows| Recording { name: "a".into(), session: String::new(), subject: String::new(), rows });
-    let data = Dataset::new(inputs, targets, vec![f64::NAN; 9], x.clone(), x, vec![one(0..9)]).unwrap();
+    let (inputs, targets) = (vec!["P1".to_owned()], vec!["J2_deg".to_owned()]);
+    let one = vec![Recording::of("a", 0..9)];
+    let data = Dataset::new(inputs, targets, vec![f64::NAN; 9], x.clone(), x, one).unwrap();
     let fault = Lags::new(vec![0.1], 0.08).unwrap().expand(&data).unwrap_err();
     assert_eq!(fault, LagFault::NoTime { longest_s: 0.1 });
 }
