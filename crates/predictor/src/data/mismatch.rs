@@ -494,6 +494,16 @@ mod tests {
         [x, y]
     }
 
+    /// The second part is of another finger: each photodiode sees other forces.
+    fn touched_by_two(parts: usize) -> [Array2<f64>; 2] {
+        let [mut x, y] = touched(parts);
+        for row in EACH..2 * EACH {
+            let own: Vec<f64> = x.row(row).to_vec();
+            (0..5).for_each(|k| x[[row, k]] = own[(k + 1) % 5] - 0.7 * own[(k + 3) % 5]);
+        }
+        [x, y]
+    }
+
     fn dataset([x, y]: [Array2<f64>; 2]) -> (Dataset, Vec<Range<usize>>) {
         let parts: Vec<Range<usize>> = (0..x.nrows() / EACH).map(|k| k * EACH..(k + 1) * EACH).collect();
         let recordings = (0..).zip(&parts).map(|(k, rows)| Recording::of(k.to_string(), rows.clone())).collect();
@@ -572,13 +582,7 @@ mod tests {
         };
         assert_eq!(of(touched(1)), None);
         assert_eq!(of(touched(3)), None);
-        // Of another finger photodiodes see other forces.
-        let [mut x, y] = touched(3);
-        for row in EACH..2 * EACH {
-            let own: Vec<f64> = x.row(row).to_vec();
-            (0..5).for_each(|k| x[[row, k]] = own[(k + 1) % 5] - 0.7 * own[(k + 3) % 5]);
-        }
-        let found = of([x, y]).unwrap();
+        let found = of(touched_by_two(3)).unwrap();
         assert!(found.times > 2.0, "{found:?}");
     }
 
@@ -644,13 +648,7 @@ mod tests {
         assert_eq!(gain(1.3), [], "a sensor that was put on again");
         let wrong = || changed(touched(2), 1, Difference::Exchanged([0, 1]));
         assert_eq!(found(wrong()).len(), 2);
-        // Another finger: each photodiode sees other forces.
-        let [mut x, y] = touched(2);
-        for row in EACH..2 * EACH {
-            let own: Vec<f64> = x.row(row).to_vec();
-            (0..5).for_each(|k| x[[row, k]] = own[(k + 1) % 5] - 0.7 * own[(k + 3) % 5]);
-        }
-        assert_eq!(found([x, y]), []);
+        assert_eq!(found(touched_by_two(2)), []);
         // A dead photodiode, a target that does not change, hidden inputs.
         let [mut x, y] = wrong();
         x.column_mut(3).fill(2.5);
