@@ -159,15 +159,14 @@ impl Recipe {
     /// [`RecipeFault`].
     pub fn fit(&self, data: &Dataset, stop: Option<&Dataset>) -> Result<Fitted, RecipeFault> {
         let options = LeastSquaresOptions { deficient: self.deficient, ..LeastSquaresOptions::default() };
-        let least_squares = |report| Report::LeastSquares(report);
         Ok(match self.kind {
             Kind::Linear => {
                 let (model, report) = fit_linear(data, &options)?;
-                Fitted { model: Model::Linear(model), report: least_squares(report) }
+                Fitted { model: Model::Linear(model), report: Report::LeastSquares(report) }
             }
             Kind::Quadratic => {
                 let (model, report) = fit_quadratic(data, &options)?;
-                Fitted { model: Model::Quadratic(model), report: least_squares(report) }
+                Fitted { model: Model::Quadratic(model), report: Report::LeastSquares(report) }
             }
             Kind::Network { hidden } => {
                 let training = TrainOptions {

@@ -168,9 +168,8 @@ impl Lags {
         let rows = data.only_rows(&kept);
         let time = rows.time_s().to_vec();
         let names = self.names(data.inputs());
-        let data = Dataset::new(names, data.targets().to_vec(), time, x, rows.y().clone(), recordings)
-            .map(|wide| Lagged { dropped: data.rows() - kept.len(), data: wide, kept })?;
-        Ok(data)
+        let wide = Dataset::new(names, data.targets().to_vec(), time, x, rows.y().clone(), recordings)?;
+        Ok(Lagged { dropped: data.rows() - kept.len(), data: wide, kept })
     }
 
     /// The same for rows that come one by one, of so many photodiodes.

@@ -39,9 +39,8 @@ impl LagStream {
         if !time_s.is_finite() || x.iter().any(|value| !value.is_finite()) {
             return false;
         }
-        match self.time_s.back() {
-            Some(&last) if time_s < last => self.reset(),
-            _ => {}
+        if self.time_s.back().is_some_and(|&last| time_s < last) {
+            self.reset();
         }
         if self.time_s.back() != Some(&time_s) {
             self.time_s.push_back(time_s);
