@@ -1,5 +1,6 @@
 //! What is known about a fit's numbers.
 
+use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
 use super::fault::listed;
@@ -51,6 +52,12 @@ fn known_together(fit: &LeastSquares, terms: &[String], data: &Dataset) -> Vec<u
     (0..terms.len()).filter(inflated).collect()
 }
 
+/// A warning of each target that does not change over rows x targets.
+pub(super) fn unchanging(targets: &[String], y: &Array2<f64>) -> impl Iterator<Item = String> {
+    let still = targets.iter().zip(y.columns()).filter(|(_, values)| values.iter().all(|value| *value == values[0]));
+    still.map(|(name, values)| format!("{name} is {:?} in all training rows, and so in all predictions", values[0]))
+}
+
 impl FitReport {
     pub(super) fn new(fit: &LeastSquares, terms: Vec<String>, data: &Dataset) -> Self {
         let known = |value: f64| value.is_finite().then_some(value);
@@ -80,11 +87,7 @@ impl FitReport {
             warnings.push(format!("{} rows determine the terms exactly: residuals say nothing", fit.rows));
         }
         if data.rows() > 1 {
-            for (name, values) in data.targets().iter().zip(data.y().columns()) {
-                if values.iter().all(|value| *value == values[0]) {
-                    warnings.push(format!("{name} is {:?} in all training rows, and so in all predictions", values[0]));
-                }
-            }
+            warnings.extend(unchanging(data.targets(), data.y()));
         }
         Self {
             rows: fit.rows,

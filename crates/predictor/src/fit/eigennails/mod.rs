@@ -14,6 +14,7 @@ use ndarray::{Array2, Axis};
 use serde::{Deserialize, Serialize};
 
 use super::FitFault;
+use super::report::unchanging;
 use crate::data::path::paths;
 use crate::model::{Basis, Covariance, Eigennails, Regression, Ridge};
 use crate::{Dataset, FORCES};
@@ -88,11 +89,7 @@ pub fn fit_eigennails(
     if 2 * hidden > data.rows() {
         warnings.push(format!("{hidden} of {} rows lack a cell and are not trained on", data.rows()));
     }
-    for (name, values) in data.targets().iter().zip(y.columns()) {
-        if values.iter().all(|value| *value == values[0]) {
-            warnings.push(format!("{name} is {:?} in all training rows, and so in all predictions", values[0]));
-        }
-    }
+    warnings.extend(unchanging(data.targets(), &y));
     let scores = (&x - &ndarray::ArrayView1::from(basis.mean())).dot(&basis.modes().t());
     let (left_out, groups) = groups(data, &whole);
     let Choice { modes, lambda, residuals } =
