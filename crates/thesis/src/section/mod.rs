@@ -199,77 +199,65 @@ fn say_closed(text: &mut SectionText, closed: Option<f64>) -> anyhow::Result<()>
 
 /// Steps on the proximal surface.
 fn figure_76(text: &mut SectionText, set: &Named, staging: &Staging) -> anyhow::Result<()> {
-    let (stepped, closed) = answered(&set.parameters, Pressed::Proximal);
     let parameters = &set.parameters;
-    let capillary = |response: &Response| response.diameters_um(parameters, 0);
-    let vein = |response: &Response| response.diameters_um(parameters, 2);
-    let light = |response: &Response| response.photodiode_v(0);
     let title = format!("Steps in PF1, {} values: capillaries (C1 and C2 alike)", set.name);
-    let [png, svg] = ["png", "svg"].map(|ending| format!("fig-76-{}.{ending}", set.name));
-    steps::draw(
-        &stepped,
-        &[
-            Signal { title: &title, y: "diameter, um", of: &capillary },
-            Signal { title: "Vein", y: "diameter, um", of: &vein },
-            Signal { title: "Photodiode", y: "VP1, V", of: &light },
-        ],
-        &staging.place(&png)?,
-        &staging.place(&svg)?,
-    )?;
-    writeln!(
-        text,
-        "Fig. 76, {} values: a step in P_F1; changes of diameters (um) and of VP1 (mV per volt of scaling), time \
-         constants of loading / unloading (s)\n",
-        set.name
-    )?;
-    writeln!(text, "| N/cm2 | capillary | vein | VP1 | capillary | vein | VP1 |\n|---|---|---|---|---|---|---|")?;
-    let mut changes: [Vec<(f64, Change)>; 3] = Default::default();
-    for one in &stepped {
-        let times_s = &one.response.times_s;
-        let of = [capillary(&one.response), vein(&one.response), light(&one.response)]
-            .map(|values| change(times_s, &values));
-        changes.iter_mut().zip(of).for_each(|(all, own)| all.push((one.load_pa, own)));
-        let sizes = [of[0].size, of[1].size, 1e3 * of[2].size].map(|size| format!("{size:.3}"));
-        let constants = of.map(|one| one.constants_s.map(figure).join(" / "));
-        writeln!(text, "| {} | {} | {} |", one.load_pa / N_PER_CM2, sizes.join(" | "), constants.join(" | "))?;
-    }
-    if set.name == LITERAL {
-        for ((name, unit), all) in [("capillary", "um"), ("vein", "um"), ("VP1", "V")].into_iter().zip(&changes) {
-            text.signal("fig76", name, unit, all);
-        }
-    }
-    say_closed(text, closed)
+    let (capillary, vein) =
+        (|of: &Response| of.diameters_um(parameters, 0), |of: &Response| of.diameters_um(parameters, 2));
+    let signals = [
+        Signal { title: &title, y: "diameter, um", name: "capillary", unit: "um", of: &capillary },
+        Signal { title: "Vein", y: "diameter, um", name: "vein", unit: "um", of: &vein },
+        Signal { title: "Photodiode", y: "VP1, V", name: "VP1", unit: "V", of: &light(0) },
+    ];
+    let words = "a step in P_F1; changes of diameters (um) and of VP1 (mV per volt of scaling), time constants of \
+                 loading / unloading (s)";
+    figure_of_steps(text, 76, set, Pressed::Proximal, words, &signals, staging)
 }
 
 /// Steps on both surfaces.
 fn figure_77(text: &mut SectionText, set: &Named, staging: &Staging) -> anyhow::Result<()> {
-    let (stepped, closed) = answered(&set.parameters, Pressed::Both);
-    let light = |unit: usize| move |response: &Response| response.photodiode_v(unit);
-    let [png, svg] = ["png", "svg"].map(|ending| format!("fig-77-{}.{ending}", set.name));
     let title = format!("Steps in PF1 and PF2, {} values: proximal photodiode", set.name);
     let signals = [
-        Signal { title: &title, y: "VP1, V", of: &light(0) },
-        Signal { title: "Distal photodiode", y: "VP2, V", of: &light(1) },
+        Signal { title: &title, y: "VP1, V", name: "VP1", unit: "V", of: &light(0) },
+        Signal { title: "Distal photodiode", y: "VP2, V", name: "VP2", unit: "V", of: &light(1) },
     ];
-    steps::draw(&stepped, &signals, &staging.place(&png)?, &staging.place(&svg)?)?;
-    writeln!(
-        text,
-        "Fig. 77, {} values: a step in P_F1 and P_F2; changes (mV per volt of scaling), time constants of loading / \
-         unloading (s)\n",
-        set.name
-    )?;
-    writeln!(text, "| N/cm2 | VP1 | VP2 | VP1 | VP2 |\n|---|---|---|---|---|")?;
-    let mut changes: [Vec<(f64, Change)>; 2] = Default::default();
+    let words = "a step in P_F1 and P_F2; changes (mV per volt of scaling), time constants of loading / unloading (s)";
+    figure_of_steps(text, 77, set, Pressed::Both, words, &signals, staging)
+}
+
+fn light(unit: usize) -> impl Fn(&Response) -> Vec<f64> {
+    move |response| response.photodiode_v(unit)
+}
+
+/// Draws and reports what signals do under steps of all loads.
+fn figure_of_steps(
+    text: &mut SectionText,
+    number: u32,
+    set: &Named,
+    pressed: Pressed,
+    words: &str,
+    signals: &[Signal<'_>],
+    staging: &Staging,
+) -> anyhow::Result<()> {
+    let (stepped, closed) = answered(&set.parameters, pressed);
+    let [png, svg] = ["png", "svg"].map(|ending| format!("fig-{number}-{}.{ending}", set.name));
+    steps::draw(&stepped, signals, &staging.place(&png)?, &staging.place(&svg)?)?;
+    writeln!(text, "Fig. {number}, {} values: {words}\n", set.name)?;
+    let names = signals.iter().map(|signal| signal.name).collect::<Vec<_>>().join(" | ");
+    writeln!(text, "| N/cm2 | {names} | {names} |\n|{}", "---|".repeat(1 + 2 * signals.len()))?;
+    let mut changes: Vec<Vec<(f64, Change)>> = vec![Vec::new(); signals.len()];
     for one in &stepped {
-        let of = [0, 1].map(|unit| change(&one.response.times_s, &one.response.photodiode_v(unit)));
-        changes.iter_mut().zip(of).for_each(|(all, own)| all.push((one.load_pa, own)));
-        let sizes = of.map(|one| format!("{:.3}", 1e3 * one.size));
-        let constants = of.map(|one| one.constants_s.map(figure).join(" / "));
+        let (mut sizes, mut constants) = (Vec::new(), Vec::new());
+        for (signal, changes) in signals.iter().zip(&mut changes) {
+            let own = change(&one.response.times_s, &(signal.of)(&one.response));
+            sizes.push(format!("{:.3}", if signal.unit == "V" { 1e3 * own.size } else { own.size }));
+            constants.push(own.constants_s.map(figure).join(" / "));
+            changes.push((one.load_pa, own));
+        }
         writeln!(text, "| {} | {} | {} |", one.load_pa / N_PER_CM2, sizes.join(" | "), constants.join(" | "))?;
     }
     if set.name == LITERAL {
-        for (name, all) in ["VP1", "VP2"].into_iter().zip(&changes) {
-            text.signal("fig77", name, "V", all);
+        for (signal, all) in signals.iter().zip(&changes) {
+            text.signal(&format!("fig{number}"), signal.name, signal.unit, all);
         }
     }
     say_closed(text, closed)

@@ -80,11 +80,15 @@ pub(super) fn change(times_s: &[f64], values: &[f64]) -> Change {
     }
 }
 
-/// A signal of a response, with the words about its panel.
+/// A signal of a response, with the words about its panel and its numbers.
 pub(super) struct Signal<'a> {
     pub(super) title: &'a str,
     /// The axis, with its unit.
     pub(super) y: &'a str,
+    /// What tables and numbers call it.
+    pub(super) name: &'a str,
+    /// Of its numbers: um, or V, which tables have as mV.
+    pub(super) unit: &'a str,
     pub(super) of: &'a dyn Fn(&Response) -> Vec<f64>,
 }
 
