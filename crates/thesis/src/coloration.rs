@@ -13,7 +13,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use image::GrayAlphaImage;
-use ndarray::Array2;
+use ndarray::{Array2, Axis, Slice};
 
 use super::Numbers;
 use lunula::figure::{Scale, Sheet, Stretch, Tile, TilePicture, grey_map};
@@ -69,13 +69,7 @@ impl Map {
     }
 
     fn mirrored(&self) -> Self {
-        let last = self.0.ncols().saturating_sub(1);
-        Self(Array2::from_shape_fn(self.0.dim(), |(row, column)| self.0[[row, last - column]]))
-    }
-
-    /// What is left where another is taken away.
-    fn less(&self, other: &Self) -> Self {
-        Self(&self.0 - &other.0)
+        Self(self.0.slice_axis(Axis(1), Slice::new(0, None, -1)).to_owned())
     }
 }
 
@@ -180,7 +174,8 @@ fn alike(numbers: &mut Numbers, means: &[(Pose, Map)]) {
     numbers.set("longitudinal_positive_like_extension", like(Pose::LongitudinalPositive, Pose::Extension));
     let pairs = (0..means.len()).flat_map(|a| (a + 1..means.len()).map(move |b| (a, b)));
     let apart = pairs.filter_map(|(a, b)| {
-        let squares: Vec<f64> = means[a].1.less(&means[b].1).of(bed).iter().map(|value| value * value).collect();
+        let apart = Map(&means[a].1.0 - &means[b].1.0);
+        let squares: Vec<f64> = apart.of(bed).iter().map(|value| value * value).collect();
         mean(&squares).map(f64::sqrt)
     });
     numbers.set("least_difference", apart.reduce(f64::min));
