@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::*;
+use lunula::job::read;
 
 /// A table of a force that goes up and down `cycles` times, with two photodiodes.
 fn recording(path: &Path, cycles: f64) {
@@ -64,8 +65,9 @@ fn one_cycle_has_no_spread_and_none_is_an_error() {
 
 #[test]
 fn a_request_that_is_none_says_what_to_choose() {
-    let refused = |options: ResponsesOptions| run(2.0, &options).1.unwrap_err().to_string();
-    assert!(refused(of("Fq_N")).contains("Fz_N"));
-    assert!(refused(ResponsesOptions { bins: 1, ..of("Fx_N") }).contains("4 to 200"));
+    for (keys, what) in [("drive = 'Fq_N'", "Fz_N"), ("drive = 'Fx_N'\nbins = 1", "4..=200")] {
+        let fault = read::<ResponsesOptions>(&keys.parse().unwrap(), "").err().unwrap();
+        assert!(fault.what.contains(what), "{keys}: {fault:?}");
+    }
     assert!(responses(&[], &of("Fx_N"), Path::new("nowhere"), &Watch::nobody()).is_err());
 }
