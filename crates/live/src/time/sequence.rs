@@ -299,21 +299,22 @@ impl Sequence {
             self.counts.doubtful += 1;
             return Verdict::Doubtful;
         }
+        self.begin_again(sample);
+        self.on(device_s, step_s, 0, host_ns)
+    }
+
+    /// A recording begins, as the device's clock or counter began again.
+    fn begin_again(&mut self, sample: &Sample) {
         self.counts.set_back += 1;
         self.begins = true;
         if let Some(count) = sample.counter {
             self.counter.set(count);
         }
-        self.on(device_s, step_s, 0, host_ns)
     }
 
     /// The device's clock or counter began again: the stream's time goes on by what the host saw pass, or a period.
     fn set_back(&mut self, sample: &Sample, host_ns: u64, host_s: Option<f64>) -> Verdict {
-        self.counts.set_back += 1;
-        self.begins = true;
-        if let Some(count) = sample.counter {
-            self.counter.set(count);
-        }
+        self.begin_again(sample);
         let passed_s = host_s.or(self.period_s()).unwrap_or(0.0);
         let (mut device_s, mut step_s) = (Device::Host(seconds(host_ns)), None);
         if let Some((unwrap, per_second)) = &mut self.clock {
