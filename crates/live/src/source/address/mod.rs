@@ -17,6 +17,8 @@ mod parse;
 use std::fmt;
 use std::path::PathBuf;
 
+use serde::Serialize;
+
 pub use finger::OfFinger;
 
 /// The baud rate of a serial port where none is given: what Arduino's examples use.
@@ -98,7 +100,7 @@ pub struct LslQuery {
 }
 
 /// How rows are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
     /// A line of text each.
@@ -118,14 +120,9 @@ pub enum Pace {
     Rate(f64),
 }
 
-impl Form {
-    /// As it is written.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Lines => "lines",
-            Self::Frames => "frames",
-        }
+impl fmt::Display for Form {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(out)
     }
 }
 
@@ -179,7 +176,7 @@ impl fmt::Display for Address {
                 key(*pace != Pace::Rate(1.0), format!("rate={pace}"));
             }
         }
-        key(self.form != Form::Lines, format!("form={}", self.form.word()));
+        key(self.form != Form::Lines, format!("form={}", self.form));
         if let Some(volts) = self.volts_per_count {
             key(true, format!("volts-per-count={volts}"));
         }
