@@ -121,6 +121,13 @@ impl Group {
         let near = if far == 0.0 { 0.0 } else { -k / far };
         [Complex64::new(near, 0.0), Complex64::new(far, 0.0)]
     }
+
+    /// `d(z)`; not 0, so that it can be divided by.
+    fn quadratic(&self, z: Complex64) -> Complex64 {
+        let d = z * (z - self.by_rate) - self.by_lumen;
+        let least = f64::EPSILON * f64::EPSILON * self.by_lumen.abs();
+        if magnitude(d) > least { d } else { Complex64::new(least, 0.0) }
+    }
 }
 
 /// `S`, its slope, and the sum of the magnitudes that it is rounded from.
@@ -135,15 +142,6 @@ fn secular(groups: &[Group], z: Complex64) -> (Complex64, Complex64, f64) {
         size += (group.coupled_lumen.abs() + group.coupled_rate.abs() * magnitude(z)) / magnitude(d) * (1.0 + rounded);
     }
     (value, slope, size)
-}
-
-impl Group {
-    /// `d(z)`; not 0, so that it can be divided by.
-    fn quadratic(&self, z: Complex64) -> Complex64 {
-        let d = z * (z - self.by_rate) - self.by_lumen;
-        let least = f64::EPSILON * f64::EPSILON * self.by_lumen.abs();
-        if magnitude(d) > least { d } else { Complex64::new(least, 0.0) }
-    }
 }
 
 /// How far rounding may move a zero of `S`.

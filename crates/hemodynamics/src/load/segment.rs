@@ -94,9 +94,7 @@ impl Piece {
             },
         }
     }
-}
 
-impl Piece {
     /// At `offset_s` after `begin_s`.
     fn after(&self, begin_s: f64, offset_s: f64) -> f64 {
         match self {
