@@ -103,12 +103,8 @@ impl Live {
 
     /// Goes on from another state and other inputs.
     pub fn restart(&mut self, start: &State, inputs: &Inputs) -> Result<(), LiveFault> {
-        start.check()?;
-        let (walls, got) = (self.model.walls(), start.lumens.len());
-        if walls != got {
-            return Err(StateFault::Length { walls, got }.into());
-        }
-        check(inputs)?;
+        start.check_walls(self.model.walls())?;
+        inputs.check(|load, value| LiveFault::Input { load, value })?;
         self.state.clone_from(start);
         self.inputs = *inputs;
         self.stepper.place_at(&start.lumens, &start.rates);
@@ -117,7 +113,7 @@ impl Live {
 
     /// One sample on: the state when the inputs have gone straight to these.
     pub fn sample(&mut self, inputs: &Inputs) -> Result<&State, LiveFault> {
-        check(inputs)?;
+        inputs.check(|load, value| LiveFault::Input { load, value })?;
         let (from, to, per_s) = (self.inputs, *inputs, 1.0 / self.sample_s);
         self.pace.restart(self.sample_s, self.stepper.evaluations + MOST_EVALUATIONS);
         let course = Course {
@@ -181,12 +177,5 @@ fn between(from: &Inputs, to: &Inputs, part: f64) -> Inputs {
         downstream_pa: line(from.downstream_pa, to.downstream_pa),
         proximal_pa: line(from.proximal_pa, to.proximal_pa),
         distal_pa: line(from.distal_pa, to.distal_pa),
-    }
-}
-
-fn check(inputs: &Inputs) -> Result<(), LiveFault> {
-    match inputs.not_finite() {
-        Some((load, value)) => Err(LiveFault::Input { load, value }),
-        None => Ok(()),
     }
 }

@@ -85,6 +85,15 @@ impl State {
         Ok(())
     }
 
+    /// As [`State::check`], of a model of so many walls.
+    pub(crate) fn check_walls(&self, walls: usize) -> Result<(), StateFault> {
+        self.check()?;
+        match self.lumens.len() {
+            got if got != walls => Err(StateFault::Length { walls, got }),
+            _ => Ok(()),
+        }
+    }
+
     /// Displacement of wall `j`, m: `x = D (d / D - 1)`.
     pub fn displacement_m(&self, parameters: &Parameters, j: usize) -> f64 {
         parameters.wall(j).diameter_m * (self.lumens[j] - 1.0)

@@ -112,7 +112,7 @@ pub enum EquilibriumFault {
 /// order of the vein's lumen. Empty where there are none. An error where an input is not finite, or where units that
 /// differ are so many that the branches can't be counted.
 pub fn equilibria(model: &Model, inputs: &Inputs) -> Result<Vec<Equilibrium>, EquilibriumFault> {
-    check(inputs)?;
+    inputs.check(|what, value| EquilibriumFault::NotFinite { what, value })?;
     let network = Network::new(model, inputs);
     if !network.in_range() {
         return Err(EquilibriumFault::Range);
@@ -140,13 +140,6 @@ impl GaveUp {
             GaveUp::Choices(choices) => EquilibriumFault::Choices { units, choices },
             GaveUp::Equilibria(most) => EquilibriumFault::Equilibria { units, most },
         }
-    }
-}
-
-fn check(inputs: &Inputs) -> Result<(), EquilibriumFault> {
-    match inputs.not_finite() {
-        Some((what, value)) => Err(EquilibriumFault::NotFinite { what, value }),
-        None => Ok(()),
     }
 }
 

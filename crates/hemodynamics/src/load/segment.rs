@@ -25,11 +25,14 @@ impl Inputs {
         Inputs { upstream_pa, downstream_pa, ..Inputs::default() }
     }
 
-    /// The first that is not a finite number, by the thesis' symbol.
-    pub(crate) fn not_finite(&self) -> Option<(&'static str, f64)> {
+    /// Whether all are finite numbers; else the fault of the first that is not, of its thesis' symbol and its value.
+    pub(crate) fn check<E>(&self, fault: impl FnOnce(&'static str, f64) -> E) -> Result<(), E> {
         let Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa } = *self;
         let named = [("P_H", upstream_pa), ("P_L", downstream_pa), ("P_F1", proximal_pa), ("P_F2", distal_pa)];
-        named.into_iter().find(|(_, value)| !value.is_finite())
+        match named.into_iter().find(|(_, value)| !value.is_finite()) {
+            Some((symbol, value)) => Err(fault(symbol, value)),
+            None => Ok(()),
+        }
     }
 }
 

@@ -236,10 +236,8 @@ impl<F: Fn(f64) -> Inputs> Course<'_, F> {
     /// The inputs at a time, all finite.
     fn inputs_at(&self, time_s: f64) -> Result<Inputs, Halt> {
         let inputs = (self.inputs)(time_s);
-        match inputs.not_finite() {
-            Some((load, value)) => Err(Halt::Load { load, time_s, value }),
-            None => Ok(inputs),
-        }
+        inputs.check(|load, value| Halt::Load { load, time_s, value })?;
+        Ok(inputs)
     }
 }
 

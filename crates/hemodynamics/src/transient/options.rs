@@ -2,7 +2,7 @@
 
 use super::fault::SolveFault;
 use crate::model::Model;
-use crate::state::{State, StateFault};
+use crate::state::State;
 
 /// Tolerances that can be asked for.
 const TOLERANCES: [f64; 2] = [1e-13, 1e-1];
@@ -81,11 +81,7 @@ impl SolveOptions {
     /// Whether a run from `start` through `times_s` can be asked for with these options; where it begins, s.
     pub(crate) fn begins_at(&self, model: &Model, start: &State, times_s: &[f64]) -> Result<f64, SolveFault> {
         self.check()?;
-        start.check()?;
-        let (walls, got) = (model.walls(), start.lumens.len());
-        if got != walls {
-            return Err(StateFault::Length { walls, got }.into());
-        }
+        start.check_walls(model.walls())?;
         let from_s = self.start_s.or(times_s.first().copied()).ok_or(SolveFault::NoTimes)?;
         let mut before_s = from_s;
         for (row, &time_s) in times_s.iter().enumerate() {
