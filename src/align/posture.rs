@@ -76,7 +76,7 @@ impl Posture {
         let refused = |what: &str| TableError::Read { path: path.to_owned(), what: what.to_owned() };
         let time_s = times(&table)?;
         let names = table.names();
-        let joints: Vec<String> = names.iter().filter_map(|n| joint_of(n)).map(str::to_owned).collect();
+        let joints = joints_of(names);
         if joints.is_empty() {
             let names = names.join(", ");
             return Err(refused(&format!(
@@ -206,8 +206,9 @@ fn filled_in(joint: &str, angles_deg: &[f64], sds_deg: &[f64]) -> Option<String>
 }
 
 /// `J2_deg` is the angle of `J2`; `J2_sd_deg` is nobody's angle.
-fn joint_of(column: &str) -> Option<&str> {
-    column.strip_suffix("_deg").filter(|joint| !joint.is_empty() && !joint.ends_with("_sd"))
+pub(super) fn joints_of(columns: &[String]) -> Vec<String> {
+    let named = columns.iter().filter_map(|column| column.strip_suffix("_deg"));
+    named.filter(|joint| !joint.is_empty() && !joint.ends_with("_sd")).map(str::to_owned).collect()
 }
 
 pub(super) fn missing_as_nan(cells: Vec<Option<f64>>) -> Vec<f64> {

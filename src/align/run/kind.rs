@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::align::join::join;
 use crate::align::options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
+use crate::align::posture::joints_of;
 use crate::align::run::job::run;
 use crate::align::run::plan::{Foreknown, steps};
 use crate::align::run::report::AlignReport;
@@ -103,13 +104,9 @@ impl Job for AlignJob {
         let header = self.header(log).transpose()?;
         let names = joints.filter(|joints| joints.exists).map(|joints| column_names(&joints.path));
         let names = names.transpose().map_err(|why| why.to_string())?;
-        let of_names = |names: &Vec<String>| {
-            let joint = |name: &String| name.strip_suffix("_deg").filter(|j| !j.ends_with("_sd")).map(str::to_owned);
-            names.iter().filter_map(joint).collect::<Vec<_>>()
-        };
         let demanded = || Some(demand.joints.as_ref()?.iter().cloned().collect());
         let known = Foreknown {
-            joints: names.as_ref().map(of_names).or_else(demanded),
+            joints: names.as_deref().map(joints_of).or_else(demanded),
             // In a table of angles that exists, a column with what the clock was read to show says that there is one.
             clock: match &names {
                 Some(names) => Some(names.iter().any(|name| name == "clock_read_s")),
