@@ -100,13 +100,9 @@ fn as_fitted(posture: &Posture, clock: &ClockColumns, tie: &mut Tie) -> Result<(
     let step_s = resolution_s(&clock.read_s).unwrap_or(0.0);
     let read = |row: usize| clock.read_s[row].is_finite();
     let off = |row: usize| tie.timebase.other_s(posture.time_s[row]) - (clock.read_s[row] + 0.5 * step_s);
-    let residuals_s: Vec<[f64; 2]> =
-        (0..posture.time_s.len()).filter(|&row| read(row)).map(|row| [posture.time_s[row], off(row)]).collect();
-    tie.frames_read = residuals_s.len() as u64;
-    tie.frames_abstained = posture.time_s.len() as u64 - tie.frames_read;
-    let squares: f64 = residuals_s.iter().map(|p| p[1] * p[1]).sum();
-    tie.residual_rms_s = (tie.frames_read > 0).then(|| (squares / tie.frames_read as f64).sqrt());
-    tie.residuals_s = residuals_s;
+    let frames = posture.time_s.len();
+    let residuals_s = (0..frames).filter(|&row| read(row)).map(|row| [posture.time_s[row], off(row)]).collect();
+    tie.leave_over(residuals_s, frames);
     Ok(())
 }
 
@@ -158,8 +154,6 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
     let scatter_s = SD_OF_MAD * median_of(off.iter().map(|p| p[1].abs())).unwrap_or(0.0);
     // What lies on a line to the last decimal was fitted before, and how well is not known any more.
     let sd_s = if scatter_s > FITTED_S { scatter_s } else { f64::NAN };
-    let squares: f64 = off.iter().map(|p| p[1] * p[1]).sum();
-    let frames = seen.len() as u64;
     let timebase = Timebase {
         reference_s,
         at_reference_s: reference_s + base + height,
@@ -167,13 +161,9 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
         drift,
         drift_sd: sd_s / (0.5 * span_s),
     };
-    Ok(Tie {
-        residual_rms_s: Some((squares / frames as f64).sqrt()),
-        residuals_s: off,
-        frames_read: frames,
-        frames_abstained: posture.time_s.len() as u64 - frames,
-        ..Tie::of(TieMethod::Clock, timebase)
-    })
+    let mut tie = Tie::of(TieMethod::Clock, timebase);
+    tie.leave_over(off, posture.time_s.len());
+    Ok(tie)
 }
 
 #[cfg(test)]

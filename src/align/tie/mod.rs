@@ -70,4 +70,13 @@ impl Tie {
             notes: Vec::new(),
         }
     }
+
+    /// Keeps what it leaves over in the frames in which the clock was read, of so many.
+    fn leave_over(&mut self, residuals_s: Vec<[f64; 2]>, frames: usize) {
+        let squares: f64 = residuals_s.iter().map(|p| p[1] * p[1]).sum();
+        self.frames_read = residuals_s.len() as u64;
+        self.frames_abstained = frames as u64 - self.frames_read;
+        self.residual_rms_s = (self.frames_read > 0).then(|| (squares / self.frames_read as f64).sqrt());
+        self.residuals_s = residuals_s;
+    }
 }
