@@ -108,20 +108,18 @@ impl Thinned {
             lacking: usize::from(series.iter().any(Option::is_none)),
             series,
         };
-        match self.bins.last_mut() {
-            Some(last) if last.rows < self.rows_a_bin => last.join(bin),
-            _ => self.bins.push(bin),
-        }
+        self.append(bin);
         if self.bins.len() > self.most {
             self.rows_a_bin *= 2;
-            let mut joined: Vec<Bin> = Vec::with_capacity(self.most);
-            for bin in self.bins.drain(..) {
-                match joined.last_mut() {
-                    Some(last) if last.rows + bin.rows <= self.rows_a_bin => last.join(bin),
-                    _ => joined.push(bin),
-                }
-            }
-            self.bins = joined;
+            std::mem::take(&mut self.bins).into_iter().for_each(|bin| self.append(bin));
+        }
+    }
+
+    /// Takes the rows of a bin, into the last one where they have room there.
+    fn append(&mut self, bin: Bin) {
+        match self.bins.last_mut() {
+            Some(last) if last.rows + bin.rows <= self.rows_a_bin => last.join(bin),
+            _ => self.bins.push(bin),
         }
     }
 
