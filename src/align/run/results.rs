@@ -1,6 +1,6 @@
 //! What the alignment job writes: the labelled set, its certificate and report, exports and pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::align::certificate::Certificate;
 use crate::align::error::AlignError;
@@ -112,18 +112,15 @@ impl Results {
         tie: &Tie,
         outputs: &AlignOutputs,
     ) -> Result<Vec<PathBuf>, AlignError> {
-        let mut pictures = Vec::new();
         if !outputs.figures {
-            return Ok(pictures);
+            return Ok(Vec::new());
         }
-        for kind in ["labels", "tie"] {
-            if kind == "tie" && tie.residuals_s.is_empty() {
-                continue;
-            }
-            pictures.push(self.places.draw(&outputs.training, kind, |png, svg| match kind {
-                "labels" => figures::draw_labels(samples, labels, png, svg),
-                _ => figures::draw_tie(tie, posture, png, svg).map(|_| ()),
-            })?);
+        let set = &outputs.training;
+        let draw_labels = |png: &Path, svg: &Path| figures::draw_labels(samples, labels, png, svg);
+        let mut pictures = vec![self.places.draw(set, "labels", draw_labels)?];
+        if !tie.residuals_s.is_empty() {
+            let draw_tie = |png: &Path, svg: &Path| figures::draw_tie(tie, posture, png, svg).map(drop);
+            pictures.push(self.places.draw(set, "tie", draw_tie)?);
         }
         Ok(pictures)
     }
