@@ -311,15 +311,19 @@ mod tests {
     use crate::phantom::force::ForceTrajectory;
     use crate::phantom::trajectory::Trajectory;
 
+    /// A log whose clock counts at `rate` from 60 s on.
+    fn at_rate(log: &Samples, rate: f64) -> Samples {
+        Samples { time_s: log.time_s.iter().map(|t| 60.0 + (t - 60.0) * rate).collect(), ..log.clone() }
+    }
+
     /// What is said of the angles of one phantom of 60 s and the photodiodes of another, whose clock is ahead by
     /// `offset_s` and counts at `rate`.
     fn said(seeds: [u64; 2], offset_s: f64, rate: f64) -> Agreement {
         let recordings = seeds.map(|seed| phantom(seed, Trajectory::Random { hz: 0.1, seed }, ForceTrajectory::None));
-        let [(posture, _), (_, mut samples)] = recordings;
-        samples.time_s.iter_mut().for_each(|t| *t = 60.0 + (*t - 60.0) * rate);
+        let [(posture, _), (_, samples)] = recordings;
         let tie = by_offset(offset_s, None).unwrap();
         assert_eq!(tie.method, TieMethod::Offset);
-        compare(&posture, &samples, &tie)
+        compare(&posture, &at_rate(&samples, rate), &tie)
     }
 
     #[test]
@@ -362,11 +366,8 @@ mod tests {
             assert!(own_tie.is_empty() && !late.is_empty() && !early.is_empty(), "{late}; {own_tie}; {early}");
             assert!(late.contains(" 0.5") && !early.contains("after the finger"), "{late}; {early}");
             let (posture, own) = phantom(seed, Trajectory::Random { hz: 0.3, seed }, ForceTrajectory::None);
-            let rated = |rate: f64| {
-                let time_s = own.time_s.iter().map(|t| 60.0 + (t - 60.0) * rate).collect();
-                let log = Samples { time_s, ..own.clone() };
-                compare(&posture, &log, &by_offset(60.0, None).unwrap()).warnings.concat()
-            };
+            let tie = by_offset(60.0, None).unwrap();
+            let rated = |rate: f64| compare(&posture, &at_rate(&own, rate), &tie).warnings.concat();
             let [right, percent, half, third] = [1.0, 1.01, 0.995, 1.003].map(rated);
             assert!(right.is_empty(), "{right}");
             assert!([&percent, &half].iter().all(|said| said.contains("times as fast")), "{percent}; {half}");
@@ -424,9 +425,8 @@ mod tests {
                     (&own, 60.0, 0.995),
                 ];
                 ties.map(|(log, offset_s, rate)| {
-                    let time_s = log.time_s.iter().map(|t| 60.0 + (t - 60.0) * rate).collect();
                     let tie = by_offset(offset_s, None).unwrap();
-                    let said = compare(&posture, &Samples { time_s, ..log.clone() }, &tie).warnings.concat();
+                    let said = compare(&posture, &at_rate(log, rate), &tie).warnings.concat();
                     [!said.is_empty(), said.contains("times as fast")].map(u64::from)
                 })
             };
