@@ -1,14 +1,13 @@
 //! How far a click throws the pointer.
 
-use super::RATE_HZ;
+use super::desk::{Desk, LIFTED_S};
 use super::hand::Hand;
 use super::person::Person;
-use crate::pointer::{Config, Pointer, What};
+use crate::pointer::Config;
 
 /// From one click to the next, s: the pointer has settled again.
 const APART_S: f64 = 2.0;
-/// The finger is in the air for so long at the beginning, s, then rests for so long.
-const LIFTED_S: f64 = 3.0;
+/// After the time in the air the finger rests for so long, s.
 const RESTS_S: f64 = 2.0;
 
 /// Distances of many clicks, px.
@@ -43,44 +42,23 @@ pub(super) fn click_displacement(
     person: &Person,
     presses: usize,
     seed: u64,
-    mut sensor: impl FnMut(f64, [f64; 3]) -> [f64; 3],
+    sensor: impl FnMut(f64, [f64; 3]) -> [f64; 3],
 ) -> Displacement {
-    let (mut pointer, mut hand) = (Pointer::new(*config), Hand::new(*person, *config, seed));
-    let mut at = [0i64; 2];
-    let (mut down_at, mut clicks_of_press) = (None, 0);
-    let (mut downs_px, mut ends_px, mut missed, mut extra) = (Vec::new(), Vec::new(), 0, 0);
-    let mut samples = 0u64;
-    let mut run = |until_s: f64, hand: &mut Hand, at: &mut [i64; 2], down: &mut Option<[i64; 2]>, count: &mut usize| {
-        while samples as f64 / RATE_HZ < until_s {
-            let t_s = samples as f64 / RATE_HZ;
-            samples += 1;
-            let force_n = if t_s < LIFTED_S { [0.0; 3] } else { hand.force_n(t_s, [0.0; 2]) };
-            let [fx_n, fy_n, fz_n] = sensor(t_s, force_n);
-            pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event.what {
-                What::Move { dx, dy } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
-                What::Button { down: true, .. } => {
-                    *count += 1;
-                    down.get_or_insert(*at);
-                }
-                _ => {}
-            });
-        }
-    };
+    let (mut desk, mut hand) = (Desk::new(config, sensor), Hand::new(*person, *config, seed));
+    let (mut downs_px, mut ends_px, mut missed) = (Vec::new(), Vec::new(), 0);
     let mut until_s = LIFTED_S + RESTS_S;
-    run(until_s, &mut hand, &mut at, &mut down_at, &mut clicks_of_press);
-    extra += clicks_of_press;
+    let mut extra = desk.hold(&mut hand, until_s).len();
     for _ in 0..presses {
-        let from = at;
-        (down_at, clicks_of_press) = (None, 0);
+        let from = desk.at;
         hand.press(until_s);
         until_s += APART_S;
-        run(until_s, &mut hand, &mut at, &mut down_at, &mut clicks_of_press);
+        let clicks = desk.hold(&mut hand, until_s);
         let far = |to: [i64; 2]| ((to[0] - from[0]) as f64).hypot((to[1] - from[1]) as f64);
-        match down_at {
-            Some(down_at) => {
+        match clicks.first() {
+            Some(&down_at) => {
                 downs_px.push(far(down_at));
-                ends_px.push(far(at));
-                extra += clicks_of_press - 1;
+                ends_px.push(far(desk.at));
+                extra += clicks.len() - 1;
             }
             None => missed += 1,
         }

@@ -9,6 +9,7 @@
 //! Conventions: `[Fx, Fy, Fz]` newtons of the finger on the surface, pressing is a negative `Fz`; seconds; px.
 
 mod click;
+mod desk;
 mod hand;
 mod person;
 mod rest;

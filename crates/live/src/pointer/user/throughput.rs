@@ -4,16 +4,14 @@
 //! to target, D_e the mean way, MT the mean time from click to click; throughput is the mean of ID_e / MT over the
 //! conditions, then over persons (their equation 10), with its standard error between persons.
 
-use super::RATE_HZ;
+use super::desk::Desk;
 use super::hand::{Hand, Target};
 use super::person::Person;
 use super::task::Task;
-use crate::pointer::{Click, Config, Mode, Pointer, What};
+use crate::pointer::{Click, Config, Mode};
 
 /// W_e of an SD: 96 % of normal end points are within (the source's).
 const WIDTH_OF_SD: f64 = 4.133;
-/// The finger is in the air for so long at the beginning, s: the zero is set.
-const LIFTED_S: f64 = 3.0;
 
 /// What persons achieve.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,11 +63,11 @@ where
     }
     let mut persons = Vec::new();
     for &seed in seeds {
-        let mut desk = Desk::new(*config, *person, seed, sensor(seed));
+        let (mut desk, mut hand) = (Desk::new(config, sensor(seed)), Hand::new(*person, *config, seed));
         let mut of_person = Vec::new();
         for &distance_px in &task.distances_px {
             for &width_px in &task.widths_px {
-                match desk.ring(task, distance_px, width_px) {
+                match ring(&mut desk, &mut hand, task, distance_px, width_px) {
                     Some(condition) => of_person.push(condition),
                     None => all.given_up += 1,
                 }
@@ -88,85 +86,46 @@ where
     all
 }
 
-/// A person at a desk with a pointer.
-struct Desk<S> {
-    pointer: Pointer,
-    hand: Hand,
-    sensor: S,
-    samples: u64,
-    /// Where the pointer is: the sum of its moves, counts.
-    at: [i64; 2],
-}
-
-impl<S: FnMut(f64, [f64; 3]) -> [f64; 3]> Desk<S> {
-    fn new(config: Config, person: Person, seed: u64, sensor: S) -> Self {
-        let mut desk = Self {
-            pointer: Pointer::new(config),
-            hand: Hand::new(person, config, seed),
-            sensor,
-            samples: 0,
-            at: [0; 2],
-        };
-        while desk.t_s() < LIFTED_S {
-            desk.feel([0.0; 3]);
-        }
-        desk
-    }
-
-    fn t_s(&self) -> f64 {
-        self.samples as f64 / RATE_HZ
-    }
-
-    /// One sample; whether it clicked, and where.
-    fn feel(&mut self, force_n: [f64; 3]) -> Option<[f64; 2]> {
-        let t_s = self.t_s();
-        self.samples += 1;
-        let [fx_n, fy_n, fz_n] = (self.sensor)(t_s, force_n);
-        let (at, mut click) = (&mut self.at, None);
-        self.pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event.what {
-            What::Move { dx, dy } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
-            What::Button { down: true, .. } => click = Some(at.map(|count| count as f64)),
-            _ => {}
-        });
-        click
-    }
-
-    /// One ring; none where a target was given up.
-    fn ring(&mut self, task: &Task, distance_px: f64, width_px: f64) -> Option<Condition> {
-        let mut ends = Vec::new();
-        let mut before: Option<(Target, [f64; 2], f64)> = None;
-        for target in task.targets(distance_px, width_px) {
-            let shown_s = self.t_s();
-            let at_px = loop {
-                let force_n = self.hand.aim(self.t_s(), self.at.map(|count| count as f64), target);
-                if let Some(at_px) = self.feel(force_n) {
-                    break at_px;
-                }
-                if self.t_s() - shown_s > task.patience_s {
-                    return None;
-                }
-            };
-            if let Some((from, from_px, from_s)) = before {
-                ends.push(End::new(from, from_px, target, at_px, self.t_s() - from_s));
+/// One ring; none where a target was given up.
+fn ring(
+    desk: &mut Desk<impl FnMut(f64, [f64; 3]) -> [f64; 3]>,
+    hand: &mut Hand,
+    task: &Task,
+    distance_px: f64,
+    width_px: f64,
+) -> Option<Condition> {
+    let mut ends = Vec::new();
+    let mut before: Option<(Target, [f64; 2], f64)> = None;
+    for target in task.targets(distance_px, width_px) {
+        let shown_s = desk.t_s();
+        let at_px = loop {
+            let force_n = hand.aim(desk.t_s(), desk.at.map(|count| count as f64), target);
+            if let Some(at_px) = desk.feel(force_n) {
+                break at_px.map(|count| count as f64);
             }
-            before = Some((target, at_px, self.t_s()));
+            if desk.t_s() - shown_s > task.patience_s {
+                return None;
+            }
+        };
+        if let Some((from, from_px, from_s)) = before {
+            ends.push(End::new(from, from_px, target, at_px, desk.t_s() - from_s));
         }
-        let along: Vec<f64> = ends.iter().map(|end| end.beyond_px).collect();
-        let (effective_width_px, movement_s) = (WIDTH_OF_SD * sd(&along), mean(ends.iter().map(|end| end.took_s)));
-        let effective_distance_px = mean(ends.iter().map(|end| end.way_px));
-        let bits = (effective_distance_px / effective_width_px + 1.0).log2();
-        Some(Condition {
-            distance_px,
-            width_px,
-            effective_width_px,
-            effective_distance_px,
-            movement_s,
-            missed: mean(ends.iter().map(|end| f64::from(u8::from(end.missed)))),
-            bits_per_s: bits / movement_s,
-        })
+        before = Some((target, at_px, desk.t_s()));
     }
+    let along: Vec<f64> = ends.iter().map(|end| end.beyond_px).collect();
+    let (effective_width_px, movement_s) = (WIDTH_OF_SD * sd(&along), mean(ends.iter().map(|end| end.took_s)));
+    let effective_distance_px = mean(ends.iter().map(|end| end.way_px));
+    let bits = (effective_distance_px / effective_width_px + 1.0).log2();
+    Some(Condition {
+        distance_px,
+        width_px,
+        effective_width_px,
+        effective_distance_px,
+        movement_s,
+        missed: mean(ends.iter().map(|end| f64::from(u8::from(end.missed)))),
+        bits_per_s: bits / movement_s,
+    })
 }
-
 /// A click, seen from the one before.
 struct End {
     /// How far beyond the target's centre, along the line from target to target, px.
