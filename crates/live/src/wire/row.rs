@@ -40,20 +40,23 @@ pub struct Meaning {
 }
 
 impl Meaning {
-    /// This meaning, if it is one of columns of these names.
+    /// What columns of these names, which stand in `line`, mean.
     ///
     /// # Errors
-    /// It has another number of columns, or values without a place.
-    pub(crate) fn fitting(self, names: &[String]) -> Result<Self, String> {
-        let placed = |one: &Use| match *one {
-            Use::Value { at, .. } => at < self.values,
-            Use::Text(at) => at < self.texts,
-            _ => true,
-        };
-        if self.uses.len() == names.len() && self.uses.iter().all(placed) {
-            return Ok(self);
-        }
-        Err(format!("{} columns were given {} uses", names.len(), self.uses.len()))
+    /// They mean nothing, or what they mean has another number of columns, or values without a place.
+    pub(crate) fn of(names: &[String], line: u64, naming: &mut Naming) -> Result<Self, WireFault> {
+        let meaning = naming(names).and_then(|meaning| {
+            let placed = |one: &Use| match *one {
+                Use::Value { at, .. } => at < meaning.values,
+                Use::Text(at) => at < meaning.texts,
+                _ => true,
+            };
+            if meaning.uses.len() == names.len() && meaning.uses.iter().all(placed) {
+                return Ok(meaning);
+            }
+            Err(format!("{} columns were given {} uses", names.len(), meaning.uses.len()))
+        });
+        meaning.map_err(|why| WireFault::Naming { line, names: names.join(","), why })
     }
 }
 
@@ -93,8 +96,7 @@ impl Decoded {
     /// Learns what its names mean.
     pub(crate) fn name(&mut self, naming: &mut Naming) -> Result<(), WireFault> {
         let names = std::mem::take(&mut self.names);
-        let meaning = naming(&names).and_then(|meaning| meaning.fitting(&names));
-        let meaning = meaning.map_err(|why| WireFault::Naming { line: 0, names: names.join(","), why })?;
+        let meaning = Meaning::of(&names, 0, naming)?;
         self.begin(names, meaning);
         Ok(())
     }

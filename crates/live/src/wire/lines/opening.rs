@@ -193,9 +193,7 @@ impl Opening {
             let (names, given) = (own.join(","), names.join(","));
             return Err(WireFault::OtherOrder { line: number, names, given });
         }
-        let meaning = (self.naming)(&names)
-            .and_then(|meaning| meaning.fitting(&names))
-            .map_err(|why| WireFault::Naming { line: 0, names: names.join(","), why })?;
+        let meaning = Meaning::of(&names, 0, &mut self.naming)?;
         Ok(Some(Header { names, separator, meaning, is_row }))
     }
 
@@ -206,13 +204,10 @@ impl Opening {
         number: u64,
         is_row: bool,
     ) -> Result<Option<Header>, WireFault> {
-        match (self.naming)(&names).and_then(|meaning| meaning.fitting(&names)) {
+        match Meaning::of(&names, number, &mut self.naming) {
             Ok(meaning) => Ok(Some(Header { names, separator, meaning, is_row })),
-            Err(why) => {
-                let fault = WireFault::Naming { line: number, names: names.join(","), why };
-                if self.strict {
-                    return Err(fault);
-                }
+            Err(fault) if self.strict => Err(fault),
+            Err(fault) => {
                 self.refused = Some(Refused { cells: names.len(), separator, fault });
                 Ok(None)
             }
