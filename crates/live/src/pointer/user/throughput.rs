@@ -9,6 +9,7 @@ use super::hand::{Hand, Target};
 use super::person::Person;
 use super::task::Task;
 use crate::pointer::{Click, Config, Mode};
+use crate::spread::Spread;
 
 /// W_e of an SD: 96 % of normal end points are within (the source's).
 const WIDTH_OF_SD: f64 = 4.133;
@@ -79,9 +80,9 @@ where
     if all.given_up > 0 || conditions == 0 || persons.is_empty() {
         return all;
     }
-    let each: Vec<f64> = persons.iter().map(|of| mean(of.iter().map(|condition| condition.bits_per_s))).collect();
-    all.bits_per_s = Some(mean(each.iter().copied()));
-    all.standard_error = (each.len() > 1).then(|| sd(&each) / (each.len() as f64).sqrt());
+    let each = Spread::of(persons.iter().map(|of| mean(of.iter().map(|condition| condition.bits_per_s))));
+    all.bits_per_s = each.map(|each| each.mean);
+    all.standard_error = each.and_then(|each| Some(each.sd? / (each.n as f64).sqrt()));
     all.conditions = (0..conditions).map(|index| mean_condition(&persons, index)).collect();
     all
 }
@@ -112,8 +113,8 @@ fn ring(
         }
         before = Some((target, at_px, desk.t_s()));
     }
-    let along: Vec<f64> = ends.iter().map(|end| end.beyond_px).collect();
-    let (effective_width_px, movement_s) = (WIDTH_OF_SD * sd(&along), mean(ends.iter().map(|end| end.took_s)));
+    let along = Spread::of(ends.iter().map(|end| end.beyond_px))?;
+    let (effective_width_px, movement_s) = (WIDTH_OF_SD * along.sd?, mean(ends.iter().map(|end| end.took_s)));
     let effective_distance_px = mean(ends.iter().map(|end| end.way_px));
     let bits = (effective_distance_px / effective_width_px + 1.0).log2();
     Some(Condition {
@@ -167,10 +168,4 @@ fn mean_condition(persons: &[Vec<Condition>], index: usize) -> Condition {
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len() as f64;
     values.sum::<f64>() / count
-}
-
-/// The SD with n - 1.
-fn sd(values: &[f64]) -> f64 {
-    let middle = mean(values.iter().copied());
-    (values.iter().map(|value| (value - middle).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)).sqrt()
 }
