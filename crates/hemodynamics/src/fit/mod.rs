@@ -58,13 +58,13 @@ pub fn fit(
     let others = found.split_off(1);
     let found = &found[0];
     let best = &found.point;
-    let mut known = certainty(&problem, best);
+    let mut known = certainty(&problem, found);
     if options.intervals {
         certainty::profile::intervals(&mut problem, best, &mut known);
     }
-    let mut parameters = best.parameters.clone();
-    for diode in &known.photodiodes {
-        if known.photodiodes.iter().filter(|other| other.unit == diode.unit).count() == 1 {
+    let (mut parameters, diodes) = (best.parameters.clone(), &known.result.photodiodes);
+    for diode in diodes {
+        if diodes.iter().filter(|other| other.unit == diode.unit).count() == 1 {
             for (symbol, estimate) in
                 [(Symbol::Offset(diode.unit), diode.offset), (Symbol::Scaling(diode.unit), diode.scaling)]
             {
@@ -75,19 +75,6 @@ pub fn fit(
     Ok(FitResult {
         rivals: rivals(&problem, best, &others, known.noise_sd_v),
         parameters,
-        groups: known.groups,
-        photodiodes: known.photodiodes,
-        names: known.names,
-        correlations: known.correlations,
-        residual_sd_v: known.residual_sd_v,
-        r2: known.r2,
-        values: problem.target.len(),
-        freedom: known.freedom,
-        noises: problem.noises(),
-        singular_values_v: known.singular_values_v,
-        undetermined: known.undetermined,
-        delays: known.delays,
-        stop: found.stop,
         statistics: FitStatistics {
             starts,
             starts_refused,
@@ -97,6 +84,7 @@ pub fn fit(
             simulations: problem.responder.simulations,
             steps: problem.responder.steps,
         },
+        ..known.result
     })
 }
 

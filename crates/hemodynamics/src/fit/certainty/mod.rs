@@ -10,8 +10,8 @@ pub(in crate::fit) mod noise;
 pub(in crate::fit) mod profile;
 use super::free::TENFOLD;
 use super::problem::{Evaluation, Problem};
-use super::result::{Bound, Calibrated, Combination, Estimate, Group};
-use crate::fit::algebra::levenberg::Point;
+use super::result::{Bound, Calibrated, Combination, Estimate, FitResult, FitStatistics, Group};
+use crate::fit::algebra::levenberg::{Minimum, Point};
 use crate::fit::algebra::qr;
 use crate::fit::algebra::svd::Svd;
 use crate::parameters::Symbol;
@@ -24,20 +24,12 @@ const UNSPOKEN: f64 = 0.01;
 const ROUNDING: f64 = 1e-12;
 
 pub(super) struct Certainty {
-    pub(super) groups: Vec<Group>,
-    pub(super) photodiodes: Vec<Calibrated>,
-    pub(super) names: Vec<String>,
-    pub(super) correlations: Vec<Vec<f64>>,
-    pub(super) residual_sd_v: f64,
+    /// What the fit gives, but for its rivals and how much was done.
+    pub(super) result: FitResult,
     /// Of the noise of a whitened row.
     pub(super) noise_sd_v: f64,
-    pub(super) r2: Option<f64>,
-    pub(super) freedom: usize,
-    pub(super) singular_values_v: Vec<f64>,
-    pub(super) undetermined: Vec<Combination>,
     /// Of the coordinates; 0 for those at a bound.
     pub(super) covariance: Vec<Vec<f64>>,
-    pub(super) delays: Vec<Option<delay::Delay>>,
 }
 
 /// A direction that is not determined: weights of all coordinates, and the SD along it.
@@ -46,8 +38,8 @@ struct Lost {
     sd: Option<f64>,
 }
 
-pub(super) fn certainty(problem: &Problem, best: &Evaluation) -> Certainty {
-    let coordinates = &problem.coordinates;
+pub(super) fn certainty(problem: &Problem, found: &Minimum<Evaluation>) -> Certainty {
+    let (best, coordinates) = (&found.point, &problem.coordinates);
     let n = coordinates.len();
     let at_bound: Vec<Option<Bound>> = coordinates
         .iter()
@@ -138,20 +130,25 @@ pub(super) fn certainty(problem: &Problem, best: &Evaluation) -> Certainty {
         })
         .collect();
     let undetermined = combinations(&names, best, &lost);
-    Certainty {
+    let result = FitResult {
+        parameters: best.parameters.clone(),
         groups,
         photodiodes,
         names,
         correlations,
         residual_sd_v: (ssr / freedom as f64).sqrt(),
-        noise_sd_v: variance.sqrt(),
         r2: r2(problem, ssr),
+        values: rows,
         freedom,
+        noises: problem.noises(),
         singular_values_v: svd.values.iter().map(|value| value / (rows as f64).sqrt()).collect(),
         undetermined,
-        covariance,
         delays: delay::delays(problem, best, &inside, variance.sqrt()),
-    }
+        rivals: vec![],
+        stop: found.stop,
+        statistics: FitStatistics::default(),
+    };
+    Certainty { result, noise_sd_v: variance.sqrt(), covariance }
 }
 
 /// Offsets and scalings with their errors, and the covariance of everything.

@@ -32,7 +32,9 @@ pub(in crate::fit) fn intervals(problem: &mut Problem, best: &Evaluation, certai
     let [lower, upper] = bounds(problem);
     let settings = settings(problem, &lower, &upper);
     let profile = Profile { best, covariance: &certainty.covariance, sd: certainty.noise_sd_v, settings };
-    for (q, group) in certainty.groups.iter_mut().enumerate().filter(|(_, group)| group.standard_errors.is_some()) {
+    for (q, group) in
+        certainty.result.groups.iter_mut().enumerate().filter(|(_, group)| group.standard_errors.is_some())
+    {
         group.interval = profile.ends(problem, q).map(|end| end.map(|at| problem.coordinates[q].values(at)));
     }
 }
