@@ -74,8 +74,6 @@ pub(super) struct Correlated {
     pub confidence: f64,
     /// Other lags that explain much, best first.
     pub others: Vec<LagPeak>,
-    /// How long the recordings overlap, seconds.
-    pub overlap_s: f64,
     /// The lag by the first and by the second half of what overlaps; none where a half is too short to tell.
     pub halves: Option<[HalfLag; 2]>,
 }
@@ -221,7 +219,6 @@ pub(super) fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSea
         explained: explained(best.left),
         confidence: (1.0 - chance) * preferred.min(best.votes),
         others: peaks[1..].iter().map(as_lag).collect(),
-        overlap_s,
         halves: halves(pair, spot, best.offset_s, range_s),
     })
 }
