@@ -60,6 +60,21 @@ pub struct ClockColumns {
 }
 
 impl Posture {
+    /// Of joints J1, J2, ... with these angles, each of one standard error, and no clock.
+    #[cfg(test)]
+    pub(super) fn of(time_s: Vec<f64>, angles_deg: Vec<Vec<f64>>, sd_deg: f64) -> Self {
+        Self {
+            path: "joints.csv".into(),
+            clock_s: vec![f64::NAN; time_s.len()],
+            clock: None,
+            joints: (1..=angles_deg.len()).map(|k| format!("J{k}")).collect(),
+            sds_deg: vec![vec![sd_deg; time_s.len()]; angles_deg.len()],
+            warnings: Vec::new(),
+            time_s,
+            angles_deg,
+        }
+    }
+
     /// Whether the clock in the picture was read.
     #[must_use]
     pub fn has_clock(&self) -> bool {

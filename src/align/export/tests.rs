@@ -7,15 +7,11 @@ use crate::timebase::Timebase;
 
 /// Two joints, four frames, the second without J3, the third with nothing.
 fn posture() -> Posture {
+    let angles_deg = vec![vec![10.0, 11.5, f64::NAN, -0.000_001], vec![5.25, f64::NAN, f64::NAN, 7.0]];
     Posture {
-        path: PathBuf::from("joints.csv"),
-        time_s: vec![0.0, 0.033_367, 0.066_733, 0.1001],
-        clock_s: vec![f64::NAN; 4],
-        clock: None,
         joints: vec!["J2".into(), "J3".into()],
-        angles_deg: vec![vec![10.0, 11.5, f64::NAN, -0.000_001], vec![5.25, f64::NAN, f64::NAN, 7.0]],
         sds_deg: vec![vec![0.02, 0.03, f64::NAN, 0.02], vec![f64::NAN; 4]],
-        warnings: Vec::new(),
+        ..Posture::of(vec![0.0, 0.033_367, 0.066_733, 0.1001], angles_deg, 0.0)
     }
 }
 

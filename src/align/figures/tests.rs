@@ -13,8 +13,12 @@ fn posture(seconds: f64, every: usize, lost: usize) -> Posture {
     let j2 = |t: f64| 35.0 - 40.0 * (TAU * 0.1 * t).cos();
     let seen = |k: usize, angle: f64| if k % every >= every - lost { f64::NAN } else { angle };
     let counts = |t: &f64| 65.03 + (1.0 + 45e-6) * t;
+    let angles_deg = vec![
+        time_s.iter().map(|&t| 10.0 + 2.0 * (TAU * 0.03 * t).sin()).collect(),
+        time_s.iter().enumerate().map(|(k, &t)| seen(k, j2(t))).collect(),
+        time_s.iter().enumerate().map(|(k, &t)| seen(k, 0.46 * j2(t) - 8.0)).collect(),
+    ];
     Posture {
-        path: "joints.csv".into(),
         clock_s: time_s.iter().map(counts).collect(),
         clock: Some(ClockColumns {
             read_s: time_s.iter().map(|t| (counts(t) * 10.0).floor() / 10.0).collect(),
@@ -22,15 +26,8 @@ fn posture(seconds: f64, every: usize, lost: usize) -> Posture {
             low_s: time_s.iter().map(|t| counts(t) - 0.005).collect(),
             high_s: time_s.iter().map(|t| counts(t) + 0.005).collect(),
         }),
-        joints: ["J1", "J2", "J3"].map(str::to_owned).to_vec(),
-        angles_deg: vec![
-            time_s.iter().map(|&t| 10.0 + 2.0 * (TAU * 0.03 * t).sin()).collect(),
-            time_s.iter().enumerate().map(|(k, &t)| seen(k, j2(t))).collect(),
-            time_s.iter().enumerate().map(|(k, &t)| seen(k, 0.46 * j2(t) - 8.0)).collect(),
-        ],
         sds_deg: vec![vec![0.4; time_s.len()], vec![0.6; time_s.len()], vec![1.2; time_s.len()]],
-        warnings: Vec::new(),
-        time_s,
+        ..Posture::of(time_s, angles_deg, 0.0)
     }
 }
 

@@ -1,5 +1,4 @@
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -22,20 +21,6 @@ fn samples(time_s: Vec<f64>) -> Samples {
     Samples { time_s, photodiodes, forces, faults, warnings: Vec::new(), notes: Vec::new() }
 }
 
-/// Joints J1, J2, ... with these angles; each angle's standard error `sd`.
-fn posture(time_s: Vec<f64>, angles_deg: Vec<Vec<f64>>, sd: f64) -> Posture {
-    Posture {
-        path: PathBuf::from("joints.csv"),
-        clock_s: vec![f64::NAN; time_s.len()],
-        clock: None,
-        joints: (1..=angles_deg.len()).map(|k| format!("J{k}")).collect(),
-        sds_deg: vec![vec![sd; time_s.len()]; angles_deg.len()],
-        warnings: Vec::new(),
-        time_s,
-        angles_deg,
-    }
-}
-
 /// 1 Hz bending, as fast as fingers go through their whole range.
 fn bending(t: f64) -> f64 {
     35.0 - 40.0 * (TAU * t).cos()
@@ -54,7 +39,7 @@ fn rows(seconds: f64) -> Vec<f64> {
 #[test]
 fn labels_agree_with_the_truth_and_end_with_the_video() {
     let times = frames(300, 30.0);
-    let posture = posture(times.clone(), vec![times.iter().map(|&t| bending(t)).collect()], 0.02);
+    let posture = Posture::of(times.clone(), vec![times.iter().map(|&t| bending(t)).collect()], 0.02);
     let samples = samples(rows(times[299]));
     let labels = label(&posture, &samples, &tie(LINE), None);
     let mut worst = [0.0_f64; 2];
@@ -86,7 +71,7 @@ fn labels_agree_with_the_truth_and_end_with_the_video() {
 fn rows_at_a_frame_get_its_angle() {
     let times = frames(50, 25.0);
     let angles: Vec<f64> = times.iter().map(|&t| bending(t)).collect();
-    let posture = posture(times.clone(), vec![angles.clone()], 0.02);
+    let posture = Posture::of(times.clone(), vec![angles.clone()], 0.02);
     // In seconds since 1970, where a float counts quarters of a microsecond.
     let line = Timebase { at_reference_s: 1.7e9, ..LINE };
     let samples = samples(times.iter().map(|&t| line.other_s(t)).collect());
@@ -107,7 +92,7 @@ fn hidden_markers_leave_gaps_joint_by_joint() {
     lose(&mut angles[1], 125..140);
     lose(&mut angles[1], 200..201);
     lose(&mut angles[2], 0..10);
-    let posture = posture(times.clone(), angles, 0.02);
+    let posture = Posture::of(times.clone(), angles, 0.02);
     let samples = samples(rows(times[299]));
     let labels = label(&posture, &samples, &tie(LINE), None);
     let lost = |joint: usize, t: f64| -> bool {
@@ -151,10 +136,11 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
         let mut times = all.clone();
         times.drain(40..40 + dropped);
         let dropped_rows =
-            label(&posture(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None);
+            label(&Posture::of(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None);
         let mut lost = angle(&all);
         (40..40 + dropped).for_each(|k| lost[0][k] = f64::NAN);
-        let lost_rows = label(&posture(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), None);
+        let lost_rows =
+            label(&Posture::of(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), None);
         assert_eq!(dropped_rows.gaps, lost_rows.gaps);
         assert_eq!(dropped_rows.unlabelled, lost_rows.unlabelled);
         assert_eq!(
@@ -162,8 +148,9 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
             usize::from(dropped > 1),
             "{dropped} lost: two frames are bridged, three are not"
         );
-        let asked =
-            |gap_s| label(&posture(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), Some(gap_s));
+        let asked = |gap_s| {
+            label(&Posture::of(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), Some(gap_s))
+        };
         assert!(asked((dropped + 1) as f64 / 30.0).gaps.is_empty());
         assert_eq!(asked((dropped + 1) as f64 / 30.0 - 0.001).gaps.len(), 1);
         assert_eq!(asked(0.0).counts().rows_labelled, if dropped == 3 { 27 } else { 28 }, "rows at frames only");
@@ -173,7 +160,7 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
     let times: Vec<f64> = all.iter().map(|t| t + random.random_range(-0.2..0.2) / 30.0).collect();
     let mut times: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
     times.remove(50);
-    let labels = label(&posture(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None);
+    let labels = label(&Posture::of(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None);
     assert!(labels.gaps.is_empty(), "{:?}", labels.gaps);
     let counts = labels.counts();
     assert_eq!(counts.rows_labelled + counts.after_the_video, 280);
@@ -183,7 +170,7 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
 fn one_frame_no_frame_and_no_row() {
     let still = Timebase { drift: 0.0, ..LINE };
     let [before, at, after] = [-0.1, 0.0, 0.1].map(|t| still.other_s(t));
-    let one = posture(vec![0.0], vec![vec![12.0], vec![f64::NAN]], 0.1);
+    let one = Posture::of(vec![0.0], vec![vec![12.0], vec![f64::NAN]], 0.1);
     let labels = label(&one, &samples(vec![before, at, after]), &tie(still), None);
     let status: Vec<_> = (0..3).map(|row| labels.status(row)).collect();
     assert_eq!(status, ["before the video", "gap: J2", "after the video"]);
@@ -193,7 +180,7 @@ fn one_frame_no_frame_and_no_row() {
     let unsure = Timebase { at_reference_sd_s: 1e-3, ..still };
     let labels = label(&one, &samples(vec![at]), &tie(unsure), None);
     assert!(labels.angles_deg[0][0] == 12.0 && labels.sds_deg[0][0].is_nan());
-    let none = label(&posture(Vec::new(), vec![Vec::new()], 0.1), &samples(vec![at]), &tie(still), None);
+    let none = label(&Posture::of(Vec::new(), vec![Vec::new()], 0.1), &samples(vec![at]), &tie(still), None);
     assert!(none.status(0) == "before the video" && none.gaps.is_empty());
     let empty = label(&one, &samples(Vec::new()), &tie(still), None);
     assert_eq!(empty.counts(), LabelCounts::default());
@@ -202,7 +189,7 @@ fn one_frame_no_frame_and_no_row() {
 #[test]
 fn what_is_not_known_of_a_frame_is_not_known_of_its_rows() {
     let times = frames(60, 30.0);
-    let mut posture = posture(times.clone(), vec![times.iter().map(|&t| bending(t)).collect()], 0.02);
+    let mut posture = Posture::of(times.clone(), vec![times.iter().map(|&t| bending(t)).collect()], 0.02);
     posture.sds_deg[0][30] = f64::NAN;
     let still = Timebase { reference_s: 0.0, at_reference_s: 0.0, drift: 0.0, ..LINE };
     let rows: Vec<f64> = (0..190).map(|k| 0.01 * f64::from(k) + 0.003).collect();
@@ -241,7 +228,7 @@ fn shares(rate_hz: f64, noise: f64, tie_sd_s: f64, lost_every: usize, seed: u64)
             drift_sd: 0.3 * tie_sd_s,
         };
         let log = samples((0..60).map(|k| LINE.other_s(times[5] + f64::from(k) * 0.013_7)).collect());
-        let labels = label(&posture(times, vec![angles], noise), &log, &tie(found), None);
+        let labels = label(&Posture::of(times, vec![angles], noise), &log, &tie(found), None);
         for (row, &t) in log.time_s.iter().enumerate() {
             let ratio = (labels.angles_deg[0][row] - truth(LINE.own_s(t))).abs() / labels.sds_deg[0][row];
             if !ratio.is_nan() {

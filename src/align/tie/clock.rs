@@ -176,7 +176,6 @@ mod tests {
         let counts = |t: &f64| 65.03 + t;
         let of = |value: &dyn Fn(&f64) -> f64| -> Vec<f64> { time_s.iter().map(value).collect() };
         Posture {
-            path: "joints.csv".into(),
             clock_s: of(&counts),
             clock: Some(ClockColumns {
                 read_s: of(&|t| (counts(t) * 10.0).floor() / 10.0),
@@ -184,11 +183,7 @@ mod tests {
                 low_s: of(&|t| counts(t) - 0.01),
                 high_s: of(&|t| counts(t) + 0.02),
             }),
-            time_s,
-            joints: Vec::new(),
-            angles_deg: Vec::new(),
-            sds_deg: Vec::new(),
-            warnings: Vec::new(),
+            ..Posture::of(time_s, Vec::new(), 0.0)
         }
     }
 

@@ -144,20 +144,11 @@ pub(super) mod tests {
             name: format!("P{k}"),
             values: log_s.iter().map(|t| 0.02 * k as f64 * angle(t - 100.0 - lag_s) + 1.0).collect(),
         };
-        let posture = Posture {
-            path: "joints.csv".into(),
-            clock_s: vec![f64::NAN; time_s.len()],
-            clock: None,
-            joints: vec!["J2".to_owned()],
-            angles_deg: vec![time_s.iter().map(|&t| angle(t)).collect()],
-            sds_deg: vec![vec![0.05; time_s.len()]],
-            warnings: Vec::new(),
-            time_s,
-        };
+        let angles_deg = vec![time_s.iter().map(|&t| angle(t)).collect()];
         let photodiodes = (1..4).map(channel).collect();
         let faults = vec![String::new(); log_s.len()];
         (
-            posture,
+            Posture::of(time_s, angles_deg, 0.05),
             Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, warnings: Vec::new(), notes: Vec::new() },
         )
     }
@@ -203,16 +194,8 @@ pub(super) mod tests {
         let mut angle = |joint: usize| -> Vec<f64> {
             time_s.iter().map(|&t| trajectory.angles_rad(t)[joint].to_degrees() + error()).collect()
         };
-        let posture = Posture {
-            path: "joints.csv".into(),
-            clock_s: vec![f64::NAN; time_s.len()],
-            clock: None,
-            joints: ["J1", "J2", "J3"].map(str::to_owned).to_vec(),
-            angles_deg: (0..3).map(&mut angle).collect(),
-            sds_deg: vec![vec![0.05; time_s.len()]; 3],
-            warnings: Vec::new(),
-            time_s,
-        };
+        let angles_deg = (0..3).map(&mut angle).collect();
+        let posture = Posture::of(time_s, angles_deg, 0.05);
         let (log_s, faults) = (rows.iter().map(|row| row.stamp_s).collect(), vec![String::new(); rows.len()]);
         let photodiodes = (0..8).map(channel).collect();
         let force = |axis: usize| Channel {
