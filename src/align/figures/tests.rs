@@ -43,11 +43,9 @@ fn samples(start_s: f64, seconds: f64) -> Samples {
         |p: usize| Channel { name: format!("P{}", p + 1), values: time_s.iter().map(|&t| value(p, t)).collect() };
     Samples {
         photodiodes: (0..8).map(channel).collect(),
-        forces: Vec::new(),
         faults: vec![String::new(); time_s.len()],
-        warnings: Vec::new(),
-        notes: Vec::new(),
         time_s,
+        ..Samples::default()
     }
 }
 

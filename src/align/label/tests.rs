@@ -17,8 +17,7 @@ fn tie(timebase: Timebase) -> Tie {
 }
 
 fn samples(time_s: Vec<f64>) -> Samples {
-    let (photodiodes, forces, faults) = (Vec::new(), Vec::new(), Vec::new());
-    Samples { time_s, photodiodes, forces, faults, warnings: Vec::new(), notes: Vec::new() }
+    Samples { time_s, ..Samples::default() }
 }
 
 /// 1 Hz bending, as fast as fingers go through their whole range.

@@ -147,10 +147,8 @@ pub(super) mod tests {
         let angles_deg = vec![time_s.iter().map(|&t| angle(t)).collect()];
         let photodiodes = (1..4).map(channel).collect();
         let faults = vec![String::new(); log_s.len()];
-        (
-            Posture::of(time_s, angles_deg, 0.05),
-            Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, warnings: Vec::new(), notes: Vec::new() },
-        )
+        let samples = Samples { time_s: log_s, photodiodes, faults, ..Samples::default() };
+        (Posture::of(time_s, angles_deg, 0.05), samples)
     }
 
     /// Measured: 0.1 ms.
@@ -203,7 +201,7 @@ pub(super) mod tests {
             values: rows.iter().map(|row| row.forces_read_n[axis]).collect(),
         };
         let forces = (0..3).map(force).collect();
-        (posture, Samples { time_s: log_s, photodiodes, forces, faults, warnings: Vec::new(), notes: Vec::new() })
+        (posture, Samples { time_s: log_s, photodiodes, forces, faults, ..Samples::default() })
     }
 
     /// The photodiodes' lag in bending: 0.04 s of the first order, and half of half a degree's play. Measured over 20

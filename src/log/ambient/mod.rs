@@ -29,7 +29,7 @@ use rails::Rails;
 use unlit::{Share, Unlit};
 
 /// Rows to be labelled: one for each lit row of the log.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Samples {
     /// The log's time, seconds, ascending.
     pub time_s: Vec<f64>,
