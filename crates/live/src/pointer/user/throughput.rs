@@ -127,6 +127,7 @@ fn ring(
         bits_per_s: bits / movement_s,
     })
 }
+
 /// A click, seen from the one before.
 struct End {
     /// How far beyond the target's centre, along the line from target to target, px.
