@@ -6,7 +6,7 @@ use image::metadata::Orientation;
 use image::{DynamicImage, RgbImage};
 
 use super::affine::Affine;
-use super::grid::{Part, samples, shown_size};
+use super::grid::{Part, samples};
 use super::options::NailVideoOptions;
 use super::sample::{Colours, Planes};
 use crate::labelme::LabelMe;
@@ -177,10 +177,9 @@ fn narrow(nail: &str, width_px: f64) -> String {
 
 /// A frame as it is shown, in red, green and blue.
 pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> Photograph {
-    let [width, height] = shown_size(&samples(frame.luma, info.turn.quarters()));
-    let part = Part { from: [0; 2], size: [width, height] };
+    let part = Part::whole(&samples(frame.luma, info.turn.quarters()));
     let colours = Colours::of_part(frame, Planes::of(info), part);
-    let picture = RgbImage::from_fn(width as u32, height as u32, |x, y| {
+    let picture = RgbImage::from_fn(part.size[0] as u32, part.size[1] as u32, |x, y| {
         image::Rgb(colours.at([f64::from(x), f64::from(y)]).map(|part| (255.0 * part).round().clamp(0.0, 255.0) as u8))
     });
     Photograph { image: DynamicImage::ImageRgb8(picture), orientation: Orientation::NoTransforms, profile: None }

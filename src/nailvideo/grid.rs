@@ -40,6 +40,11 @@ pub(in crate::nailvideo) fn shown_size(samples: &Samples<'_>) -> [usize; 2] {
 }
 
 impl Part {
+    /// All of the shown picture.
+    pub(in crate::nailvideo) fn whole(samples: &Samples<'_>) -> Self {
+        Self { from: [0; 2], size: shown_size(samples) }
+    }
+
     /// What lies within `reach` pixels of the points, as far as the picture goes; `None` where that is less than some
     /// pixels.
     pub(in crate::nailvideo) fn about(points: &[[f64; 2]], reach: f64, picture: [usize; 2]) -> Option<Self> {
@@ -194,7 +199,7 @@ mod tests {
         let sites = [(0.5, 0.5), (0.0, 0.5)];
         for (turn, site) in [Turn::None, Turn::Quarter].into_iter().flat_map(|turn| sites.map(|site| (turn, site))) {
             let luma = samples(frame.luma, turn.quarters());
-            let part = Part { from: [0; 2], size: shown_size(&luma) };
+            let part = Part::whole(&luma);
             let (grid, chroma) = (Grid::of_luma(&luma, part, 1), Grid::of_chroma(&frame, turn, site, part).unwrap());
             for stored in [[5.25, 6.5], [8.0, 3.0]] {
                 let [x, y] = turn.shown_from_stored(stored, (16, 12)).map(|v| v as f32);

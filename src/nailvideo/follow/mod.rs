@@ -86,9 +86,8 @@ impl Follower {
         let [a, b, _, d, e, _] = frame_from_nail.0;
         let extent_px = [2.0 * a.hypot(d), 2.0 * b.hypot(e)];
         let blur_px = blur_px(extent_px[0]);
-        let whole = Part { from: [0; 2], size: shown_size(&samples) };
         let looked_at = |step: usize| {
-            let sight = Sight::new(&samples, whole, step, blur_px);
+            let sight = Sight::new(&samples, Part::whole(&samples), step, blur_px);
             (Template::new(&sight, &frame_from_nail, step), sight)
         };
         let mut step = ((extent_px[0] / LARGEST_FINE_PX) as usize).max(1);

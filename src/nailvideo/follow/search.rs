@@ -30,21 +30,17 @@ pub(super) struct Search {
     blur_px: f64,
 }
 
-fn whole(samples: &Samples<'_>) -> Part {
-    Part { from: [0; 2], size: shown_size(samples) }
-}
-
 impl Search {
     /// For the nail of a frame; `extent_px` are its width and length.
     pub(super) fn new(samples: &Samples<'_>, middle: [f64; 2], extent_px: [f64; 2], blur_px: f64) -> Self {
         let step = ((extent_px[0] / WIDTH_BLOCKS) as usize).max(1);
-        let template = Sight::new(samples, whole(samples), step, blur_px);
+        let template = Sight::new(samples, Part::whole(samples), step, blur_px);
         Self { template, middle, reach: 0.55 * extent_px[0].min(extent_px[1]), step, blur_px }
     }
 
     /// Motions that may be the nail's in a frame, the likeliest first; `last` is the last that was known.
     pub(super) fn places(&self, samples: &Samples<'_>, last: &Affine) -> Vec<Affine> {
-        let seen = Sight::new(samples, whole(samples), self.step, self.blur_px);
+        let seen = Sight::new(samples, Part::whole(samples), self.step, self.blur_px);
         let cells = seen.all();
         let ways = TURNS_DEG.iter().flat_map(|turn| SCALES.map(|scale| (turn.to_radians(), scale)));
         let mut found: Vec<(f32, Affine)> = ways.filter_map(|way| self.best(&seen, &cells, last, way)).collect();

@@ -135,8 +135,7 @@ fn a_frame_that_is_the_template_s_own_to_the_bit_fits() {
     let scene = Scene::new(192.0, 4);
     let picture = scene.picture(&Shot::REST, 1);
     let luma = samples(picture.frame(0, 0.0).luma, 0);
-    let whole = Part { from: [0; 2], size: shown_size(&luma) };
-    let sight = Sight::new(&luma, whole, 1, blur_px(192.0));
+    let sight = Sight::new(&luma, Part::whole(&luma), 1, blur_px(192.0));
     let template = Template::new(&sight, &scene.frame_from_nail, 1);
     let fit = register(&template, &sight, Affine::IDENTITY, &mut Scratch::default()).expect("a fit");
     assert!(scene.apart(&fit.motion, &Affine::IDENTITY) < 1e-4 && fit.ncc > 0.999_99, "{fit:?}");

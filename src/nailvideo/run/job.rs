@@ -106,9 +106,7 @@ pub fn run(
             counts.all += 1;
             let place = match (&mut at_work, frame) {
                 (Some(work), frame) => job.step(scope, work, index, time_s, frame)?,
-                (None, None) => {
-                    Kept { index, time_s, place: Err(Lost::Undecoded), readings: Vec::new(), skin: f64::NAN }
-                }
+                (None, None) => Kept::lost(index, time_s, Lost::Undecoded),
                 (None, Some(frame)) => {
                     if finder.looks_at(index) {
                         let picture = upright(frame, &info);
@@ -129,7 +127,7 @@ pub fn run(
                     match &mut at_work {
                         Some(work) => job.step(scope, work, index, time_s, Some(frame))?,
                         None if !finder.may_look_on(index) => break,
-                        None => Kept { index, time_s, place: Err(Lost::NotYet), readings: Vec::new(), skin: f64::NAN },
+                        None => Kept::lost(index, time_s, Lost::NotYet),
                     }
                 }
             };
@@ -336,17 +334,15 @@ impl Job<'_> {
             None => Err(Lost::Undecoded),
         };
         work.motion.add(index, time_s, &place)?;
-        let mut lost = Kept { index, time_s, place: Err(Lost::Outside), readings: Vec::new(), skin: f64::NAN };
         let seen = frame.zip(place.as_ref().ok()).and_then(|(frame, place)| {
             let frame_from_nail = place.motion.after(&work.nail.frame_from_nail());
             Some((Colours::new(frame, Planes::of(self.info), &frame_from_nail)?, frame_from_nail, place))
         });
         let Some((colours, frame_from_nail, place)) = seen else {
-            lost.place = Err(place.err().unwrap_or(Lost::Outside));
             if let Some(cells) = &mut work.cells {
                 cells.add(time_s, &[])?;
             }
-            return Ok(lost);
+            return Ok(Kept::lost(index, time_s, place.err().unwrap_or(Lost::Outside)));
         };
         self.stages.time("photodiodes", || {
             work.sampler.sample(&colours, &frame_from_nail, place.rim.as_ref(), &mut work.readings);
@@ -355,9 +351,8 @@ impl Job<'_> {
             self.stages.time("cells", || cells.add(time_s, &work.readings[work.photodiodes..]))?;
         }
         self.stages.time("maps", || {
-            work.windows
-                .iter_mut()
-                .for_each(|window| window.add(time_s, &colours, &frame_from_nail, work.sampler.covered()));
+            let covered = work.sampler.covered.as_ref();
+            work.windows.iter_mut().for_each(|window| window.add(time_s, &colours, &frame_from_nail, covered));
         });
         if let Some(thumbnails) = &mut work.thumbnails {
             self.stages.time("figures", || thumbnails.offer(time_s, &colours, &frame_from_nail));
@@ -369,7 +364,8 @@ impl Job<'_> {
         if self.outputs.frames {
             self.write_frame(scope, index, colours, frame_from_nail);
         }
-        Ok(Kept { place: Ok(place.se_px as f32), readings: work.readings[..work.photodiodes].to_vec(), skin, ..lost })
+        let readings = work.readings[..work.photodiodes].to_vec();
+        Ok(Kept { index, time_s, place: Ok(place.se_px as f32), readings, skin })
     }
 
     /// Writes what needs the whole video.
@@ -382,9 +378,9 @@ impl Job<'_> {
         watch: &Watch<'_>,
     ) -> Result<NailVideoReport, NailVideoError> {
         let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, quantizer, sampler, .. } = work;
-        motion.finish()?;
+        motion.table.finish()?;
         if let Some(cells) = cells {
-            cells.finish()?;
+            cells.table.finish()?;
         }
         let names: Vec<String> = positions.photodiodes.iter().map(|one| one.name.clone()).collect();
         let time_s: Vec<f64> = kept.iter().map(|row| row.time_s).collect();

@@ -30,6 +30,13 @@ pub(super) struct Kept {
     pub(super) skin: f64,
 }
 
+impl Kept {
+    /// Of a frame without the nail.
+    pub(super) fn lost(index: u64, time_s: f64, why: Lost) -> Self {
+        Self { index, time_s, place: Err(why), readings: Vec::new(), skin: f64::NAN }
+    }
+}
+
 fn decimals(light: Light) -> usize {
     if light == Light::None { 6 } else { 4 }
 }
@@ -50,7 +57,7 @@ fn create(
 /// `motion.csv`: the nail's place in every frame.
 #[derive(Debug)]
 pub(super) struct MotionTable {
-    table: TableWriter,
+    pub(super) table: TableWriter,
     nail: NailFrame,
 }
 
@@ -94,16 +101,12 @@ impl MotionTable {
         let ([t, u], [v, w]) = (at(0.5, 0.0), at(-0.5, 0.0));
         [x, y, (p - r).hypot(q - s), (t - v).hypot(u - w), (p - r).atan2(s - q).to_degrees()]
     }
-
-    pub(super) fn finish(self) -> Result<(), NailVideoError> {
-        Ok(self.table.finish()?)
-    }
 }
 
 /// `cells.csv`: the normalized nail in N x N averages.
 #[derive(Debug)]
 pub(super) struct CellTable {
-    table: TableWriter,
+    pub(super) table: TableWriter,
     /// The place of each cell among those that are read.
     read: Vec<Option<usize>>,
 }
@@ -132,10 +135,6 @@ impl CellTable {
         let cells: Vec<Value<'_>> =
             std::iter::once(Value::Number(time_s)).chain(self.read.iter().map(|at| Value::from(value(at)))).collect();
         Ok(self.table.write(&cells)?)
-    }
-
-    pub(super) fn finish(self) -> Result<(), NailVideoError> {
-        Ok(self.table.finish()?)
     }
 }
 

@@ -118,7 +118,7 @@ pub(in crate::nailvideo) struct Sampler {
     spread: Vec<Watched>,
     noise: Noise,
     /// What is covered in the frame that was sampled last, where something lies over the nail.
-    covered: Option<Covered>,
+    pub(in crate::nailvideo) covered: Option<Covered>,
     /// Frames that were sampled.
     frames: usize,
 }
@@ -254,11 +254,6 @@ impl Sampler {
     /// `None` where too few frames show the whole nail.
     pub(in crate::nailvideo) fn noise_sd(&self) -> Option<f64> {
         self.noise.sd()
-    }
-
-    /// What is covered in the frame that was sampled last, where something lies over the nail.
-    pub(in crate::nailvideo) fn covered(&self) -> Option<&Covered> {
-        self.covered.as_ref()
     }
 
     /// The skin's own colour about the nail, in the unit of the values: what of a change is the light's.
