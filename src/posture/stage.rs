@@ -111,40 +111,34 @@ impl Stage {
         let lit =
             |colour: [u8; 3]| Matrix::BT709.from_rgb(colour.map(|part| (f64::from(part) / 255.0 * gain).min(1.0)));
         let mut full = vec![lit(self.ground); width * height];
-        for disc in &self.discs {
-            let colour = lit(disc.colour);
-            let reach = disc.radius + 1.0;
+        // Cover and colour about a place.
+        let mut paint = |at: [f64; 2], reach: f64, of: &dyn Fn(f64, f64) -> (f64, [f64; 3])| {
             let span = |at: f64, size: usize| {
                 ((at - reach).max(0.0) as usize).min(size)..((at + reach).max(-1.0) + 1.0).min(size as f64) as usize
             };
-            for y in span(disc.at[1], height) {
-                for x in span(disc.at[0], width) {
-                    let distance = (x as f64 - disc.at[0]).hypot(y as f64 - disc.at[1]);
-                    let cover = (disc.radius + 0.5 - distance).clamp(0.0, 1.0);
+            for y in span(at[1], height) {
+                for x in span(at[0], width) {
+                    let (cover, colour) = of(x as f64, y as f64);
                     let pixel = &mut full[y * width + x];
-                    for (value, of_disc) in pixel.iter_mut().zip(colour) {
-                        *value += cover * (of_disc - *value);
-                    }
+                    pixel.iter_mut().zip(colour).for_each(|(value, part)| *value += cover * (part - *value));
                 }
             }
+        };
+        for disc in &self.discs {
+            let colour = lit(disc.colour);
+            paint(disc.at, disc.radius + 1.0, &|x, y| {
+                ((disc.radius + 0.5 - (x - disc.at[0]).hypot(y - disc.at[1])).clamp(0.0, 1.0), colour)
+            });
         }
         for blot in &self.blots {
             let (colour, shine) = (lit(blot.colour), lit([0x80, 0x90, 0x70]));
             let reach = 1.8 * blot.radius * blot.stretch[0].max(blot.stretch[1]);
-            let span = |at: f64, size: usize| {
-                ((at - reach).max(0.0) as usize).min(size)..((at + reach).max(-1.0) + 1.0).min(size as f64) as usize
-            };
-            for y in span(blot.at[1], height) {
-                for x in span(blot.at[0], width) {
-                    let at = blot.local(x as f64, y as f64);
-                    let cover = (blot.radius * blot.within(at) + 0.5).clamp(0.0, 1.0);
-                    let bright = 0.5 * (-((at[0] - 0.3).powi(2) + (at[1] + 0.2).powi(2)) / 0.08).exp();
-                    let pixel = &mut full[y * width + x];
-                    for (plane, value) in pixel.iter_mut().enumerate() {
-                        *value += cover * (colour[plane] + bright * (shine[plane] - colour[plane]) - *value);
-                    }
-                }
-            }
+            paint(blot.at, reach, &|x, y| {
+                let at = blot.local(x, y);
+                let cover = (blot.radius * blot.within(at) + 0.5).clamp(0.0, 1.0);
+                let bright = 0.5 * (-((at[0] - 0.3).powi(2) + (at[1] + 0.2).powi(2)) / 0.08).exp();
+                (cover, std::array::from_fn(|plane| colour[plane] + bright * (shine[plane] - colour[plane])))
+            });
         }
         let mut picture = Picture::new(self.format);
         let (across, down) = self.format.subsampling.unwrap_or((1, 1));

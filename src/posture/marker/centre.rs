@@ -110,40 +110,17 @@ fn unrefined(frame: &Frame<'_>, look: &Look, at_px: [f64; 2]) -> Result<Fit, Los
     let variance = noise / (contrast * 4.0 * std::f64::consts::PI);
     let white_px2 = [variance, 0.0, variance];
     let covariance_px2 = white_px2.map(|v| v * look.inflation.powi(2));
-    Ok(Fit {
-        centre: Centre { at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: look.radius_px },
-        white_px2,
-        marker: look.marker,
-        background: look.background,
-        blur_px: look.blur_px,
-        misfit: look.misfit,
-        noise: look.noise,
-        chroma_shift_px: None,
-        outline: None,
-    })
+    let centre = Centre { at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: look.radius_px };
+    Ok(look.unfitted(centre, white_px2))
 }
 
 /// A blot's centre, the error of its outline beside that of noise.
 fn of_blot(look: &Look, outline: Outline) -> Fit {
-    let white_px2 = outline.white_px2;
+    let Outline { at_px, white_px2, lasting_px2, marker, background, noise, .. } = outline;
     let factor = look.inflation.powi(2);
-    let covariance_px2 = std::array::from_fn(|k| factor * white_px2[k] + outline.lasting_px2[k]);
-    Fit {
-        centre: Centre {
-            at_px: outline.at_px,
-            covariance_px2,
-            lasting_px2: outline.lasting_px2,
-            radius_px: outline.radius_px(),
-        },
-        white_px2,
-        marker: outline.marker,
-        background: outline.background,
-        blur_px: look.blur_px,
-        misfit: look.misfit,
-        noise: outline.noise,
-        chroma_shift_px: None,
-        outline: Some(outline),
-    }
+    let covariance_px2 = std::array::from_fn(|k| factor * white_px2[k] + lasting_px2[k]);
+    let centre = Centre { at_px, covariance_px2, lasting_px2, radius_px: outline.radius_px() };
+    Fit { marker, background, noise, outline: Some(outline), ..look.unfitted(centre, white_px2) }
 }
 
 /// The fit from a place that is right within a pixel or so, not judged.

@@ -156,11 +156,8 @@ impl<'a> Results<'a> {
         let Some(frame) = row.frame else { return Ok(overlay.add_missing(row.index, row.time_s)?) };
         let layout = self.layout;
         // A marker that no wanted joint needs is not looked for.
-        let marks = self.needed.iter().map(|&marker| Mark {
-            name: &layout.markers[marker].name,
-            sight: row.sights[marker],
-            expected_px: None,
-        });
+        let mark = |&marker: &usize| Mark { name: &layout.markers[marker].name, sight: row.sights[marker] };
+        let marks = self.needed.iter().map(mark);
         let place = |marker: usize| self.needed.iter().position(|&needed| needed == marker);
         let segments = layout.segments.iter().filter_map(|segment| {
             let [one, other] = segment.markers;

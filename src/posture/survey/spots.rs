@@ -201,8 +201,7 @@ impl Spots {
 
     /// Whether most spots of known look are no discs.
     pub(super) fn are_blots(&self) -> bool {
-        let looks = || self.all.iter().filter_map(|spot| spot.look.as_ref());
-        2 * looks().filter(|(_, look)| look.blot.is_some()).count() > looks().count()
+        Look::are_blots(self.all.iter().filter_map(|spot| Some(&spot.look.as_ref()?.1)))
     }
 
     /// The number of a new spot at a place of the first frame, of this one of so many paints.

@@ -39,17 +39,8 @@ pub(crate) fn look(frame: &Frame<'_>, point: &Point) -> Look {
         }
     }
     let background = sum.map(|value| value / f64::max(count, 1.0));
-    Look {
-        radius_px: point.radius_px,
-        marker: point.colour,
-        background,
-        blur_px: 0.3 * point.radius_px,
-        misfit: 0.02,
-        least_misfit: 0.02,
-        noise: [2.0; 3],
-        inflation: 1.0,
-        blot: None,
-    }
+    let plain = Look::plain(point.radius_px, point.colour, background);
+    Look { blur_px: 0.3 * point.radius_px, misfit: 0.02, least_misfit: 0.02, noise: [2.0; 3], ..plain }
 }
 
 /// The place of a blob of the marker of this look; none if it is not one compact thing.
@@ -60,15 +51,5 @@ pub(super) fn fit(look: &Look, blob: &Blob) -> Option<Fit> {
     let variance = (ERROR_RADII * blob.radius_px()).powi(2) + ERROR_PX * ERROR_PX;
     let covariance_px2 = [variance, 0.0, variance];
     let centre = Centre { at_px: blob.at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: blob.radius_px() };
-    Some(Fit {
-        centre,
-        white_px2: covariance_px2,
-        marker: blob.colour,
-        background: look.background,
-        blur_px: look.blur_px,
-        misfit: look.misfit,
-        noise: look.noise,
-        chroma_shift_px: None,
-        outline: None,
-    })
+    Some(Fit { marker: blob.colour, ..look.unfitted(centre, covariance_px2) })
 }

@@ -213,16 +213,7 @@ impl Tracker {
                 rod.length_px.filter(|_| link.rigid)
             })
             .collect();
-        let scene = Scene {
-            chain: &self.chain,
-            choices: &choices,
-            points: &points,
-            lengths_px: &lengths,
-            missing: &missing,
-            flexion: self.flexion,
-            blots: self.are_blots(),
-        };
-        let namings = scene.namings();
+        let namings = self.scene(&points, &choices, &lengths, &missing).namings();
         let given = namings.first().map_or(0.0, |best| best.1);
         if let Some((best, cost)) = namings.first() {
             for (place, link) in self.chain.links.iter().enumerate() {
@@ -267,16 +258,7 @@ impl Tracker {
             })
             .collect();
         let missing = vec![MISSING; free.len()];
-        let scene = Scene {
-            chain: &self.chain,
-            choices: &free,
-            points,
-            lengths_px: lengths,
-            missing: &missing,
-            flexion: self.flexion,
-            blots: self.are_blots(),
-        };
-        let namings = scene.namings();
+        let namings = self.scene(points, &free, lengths, &missing).namings();
         let Some((best, cost)) = namings.first() else { return };
         if cost + DOUBT_MARGIN >= given {
             return;
@@ -290,10 +272,16 @@ impl Tracker {
         }
     }
 
-    /// Whether most markers of known look are no discs.
-    fn are_blots(&self) -> bool {
-        let looks = || self.targets.iter().filter_map(|target| target.look.as_ref());
-        2 * looks().filter(|look| look.blot.is_some()).count() > looks().count()
+    /// What markers are named in.
+    fn scene<'a>(
+        &'a self,
+        points: &'a [Option<Point>],
+        choices: &'a [Vec<(usize, f64)>],
+        lengths_px: &'a [Option<f64>],
+        missing: &'a [f64],
+    ) -> Scene<'a> {
+        let blots = Look::are_blots(self.targets.iter().filter_map(|target| target.look.as_ref()));
+        Scene { chain: &self.chain, choices, points, lengths_px, missing, flexion: self.flexion, blots }
     }
 
     /// What a blob costs as a marker; none if it can't be it.

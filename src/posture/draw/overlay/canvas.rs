@@ -64,12 +64,6 @@ impl Canvas<'_> {
         self.strokes(&[Stroke::Line([[x - arm, y], [x + arm, y]]), Stroke::Line([[x, y - arm], [x, y + arm]])]);
     }
 
-    /// A slanted cross of arms `arm` long.
-    pub(super) fn cross(&mut self, [x, y]: [f64; 2], arm: f64) {
-        let arms = [[[x - arm, y - arm], [x + arm, y + arm]], [[x - arm, y + arm], [x + arm, y - arm]]];
-        self.strokes(&arms.map(Stroke::Line));
-    }
-
     /// Text on a darkened box with its top left corner at a place.
     pub(super) fn text(&mut self, text: &Text, [x, y]: [f64; 2]) {
         let format = self.picture.format;

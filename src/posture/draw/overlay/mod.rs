@@ -2,8 +2,8 @@
 //!
 //! In: each frame, what it shows of each marker, the segments between markers, texts of the angles. Out: an H.264 file,
 //! upright, 8-bit 4:2:0. A marker that is seen has a circle of its radius, a cross at its centre and its name; one that
-//! is lost, a slanted cross where it was expected, and its name with the reason in a corner. Nothing is converted to
-//! red, green and blue: the drawing is done in the video's own planes.
+//! is lost, its name with the reason in a corner. Nothing is converted to red, green and blue: the drawing is done in
+//! the video's own planes.
 
 mod canvas;
 mod labels;
@@ -33,8 +33,6 @@ pub(crate) struct Mark<'a> {
     pub(crate) name: &'a str,
     /// What the frame shows of it, in coordinates of the stored picture.
     pub(crate) sight: Sight,
-    /// Where it was expected, in the same coordinates.
-    pub(crate) expected_px: Option<[f64; 2]>,
 }
 
 impl Mark<'_> {
@@ -178,9 +176,6 @@ impl Overlay {
             canvas.circle(at, radius);
             canvas.plus(at, (ARM * radius).max(2.0));
         }
-        for at in drawing.marks.iter().filter(|mark| mark.seen().is_none()).filter_map(|mark| mark.expected_px) {
-            canvas.cross(shown(at), 0.4 * text_px);
-        }
     }
 }
 
@@ -202,7 +197,7 @@ mod tests {
 
     fn mark(name: &str, at_px: [f64; 2]) -> Mark<'_> {
         let centre = Centre { at_px, covariance_px2: [0.01, 0.0, 0.01], lasting_px2: [0.0; 3], radius_px: 9.0 };
-        Mark { name, sight: Sight::Seen(centre), expected_px: None }
+        Mark { name, sight: Sight::Seen(centre) }
     }
 
     fn grey() -> Picture {
@@ -248,7 +243,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut overlay = Overlay::create(&folder.path().join("a.mp4"), &info).unwrap();
         let at = [100.0, 70.0];
-        let lost = Mark { name: "x", sight: Sight::Lost(Loss::Hidden), expected_px: Some([30.0, 30.0]) };
+        let lost = Mark { name: "x", sight: Sight::Lost(Loss::Hidden) };
         overlay.picture = shown;
         let drawing = Drawing {
             marks: vec![mark("", at), lost, mark("", [100.0, 30.0])],
@@ -261,7 +256,7 @@ mod tests {
             overlay.picture.planes[0][y as usize * overlay.picture.format.width + x as usize]
         };
         assert!(luma([109.0, 70.0]) > 180 && luma([100.0, 79.0]) > 180, "the circle");
-        assert!(luma(at) > 180 && luma([30.0, 30.0]) > 180, "the crosses");
+        assert!(luma(at) > 180, "the cross");
         assert!(luma([100.0, 50.0]) > 180, "the segment");
         assert_eq!(luma([65.0, 50.0]), 110, "no segment to a lost marker");
         assert_eq!(luma([104.0, 74.0]), 110, "the marker itself");

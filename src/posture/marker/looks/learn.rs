@@ -9,8 +9,6 @@ use crate::video::Frame;
 
 /// Blurs to start from, pixels.
 const BLURS_PX: [f64; 4] = [0.6, 1.0, 1.8, 3.2];
-/// Inflation to start with.
-const INFLATION: f64 = 1.0;
 
 impl Look {
     /// The looks of the marker of about `radius_px` (within a quarter) at about `at_px`; none where there is no such
@@ -23,17 +21,7 @@ impl Look {
         scratch: &mut Scratch,
     ) -> Option<Self> {
         let (marker, background) = colours(frame, siting, at_px, radius_px)?;
-        let start = Self {
-            radius_px,
-            marker,
-            background,
-            blur_px: 0.0,
-            misfit: 0.0,
-            least_misfit: 0.0,
-            noise: [1.0; 3],
-            inflation: INFLATION,
-            blot: None,
-        };
+        let start = Self::plain(radius_px, marker, background);
         let mut best: Option<(f64, Fit)> = None;
         for blur_px in BLURS_PX.into_iter().filter(|&blur| blur <= BLURS_PX[0].max(0.4 * radius_px)) {
             let mut look = Self { blur_px, ..start.clone() };
@@ -68,18 +56,9 @@ impl Look {
     /// out.
     pub(crate) fn learn_blot(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2], radius_px: f64) -> Option<Self> {
         let (blot, outline) = Blot::learn(frame, siting, at_px, radius_px)?;
-        Some(Self {
-            radius_px: outline.radius_px(),
-            marker: outline.marker,
-            background: outline.background,
-            // What a disc would have; nothing is fitted with them.
-            blur_px: 0.0,
-            misfit: 0.0,
-            least_misfit: 0.0,
-            noise: outline.noise,
-            inflation: INFLATION,
-            blot: Some(blot),
-        })
+        // Nothing is fitted with a disc's blur and misfit.
+        let plain = Self::plain(outline.radius_px(), outline.marker, outline.background);
+        Some(Self { noise: outline.noise, blot: Some(blot), ..plain })
     }
 }
 

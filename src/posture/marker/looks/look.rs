@@ -5,6 +5,7 @@
 
 use crate::posture::marker::blot::Blot;
 use crate::posture::marker::fit::Fit;
+use crate::posture::marker::sight::Centre;
 use crate::posture::survey::find::Paint;
 
 /// How much a fit counts against what was learned before.
@@ -35,6 +36,33 @@ pub(crate) struct Look {
 }
 
 impl Look {
+    /// Of these colours, with nothing known of blur, misfit and noise; of no outline.
+    pub(crate) fn plain(radius_px: f64, marker: [f64; 3], background: [f64; 3]) -> Self {
+        Self {
+            radius_px,
+            marker,
+            background,
+            blur_px: 0.0,
+            misfit: 0.0,
+            least_misfit: 0.0,
+            noise: [1.0; 3],
+            inflation: 1.0,
+            blot: None,
+        }
+    }
+
+    /// A marker that looks so and was not fitted, as a fit with this centre.
+    pub(crate) fn unfitted(&self, centre: Centre, white_px2: [f64; 3]) -> Fit {
+        let Self { marker, background, blur_px, misfit, noise, .. } = *self;
+        Fit { centre, white_px2, marker, background, blur_px, misfit, noise, chroma_shift_px: None, outline: None }
+    }
+
+    /// Whether most are no discs.
+    pub(crate) fn are_blots<'a>(looks: impl Iterator<Item = &'a Self>) -> bool {
+        let more = |blot: &Self| if blot.blot.is_some() { 1 } else { -1 };
+        looks.map(more).sum::<i32>() > 0
+    }
+
     /// Its colour as last seen.
     pub(crate) fn paint(&self, of: &Paint) -> Paint {
         if self.blot.is_some() { of.seen_on(self.marker, self.background) } else { of.seen_as(self.marker) }
