@@ -273,9 +273,8 @@ impl Editor {
     }
 
     fn go_on(&self, state: &mut State) {
-        if state.at >= state.trail.len() {
-            // Waiting, or over.
-        } else {
+        // At the end it waits, or is over.
+        if state.at < state.trail.len() {
             state.at += 1;
         }
         if state.at == state.trail.len() {

@@ -46,21 +46,20 @@ impl Item {
     pub(super) fn new(photo: usize, number: usize, find: Find) -> Self {
         let Find { rank, shapes, shape, why } = find;
         let begun = shape.clone();
-        let (corner, decision, view, gesture, accepted) = (None, None, None, None, None);
         Self {
             photo,
             number,
             rank,
             why,
             shape,
-            corner,
-            decision,
-            view,
+            corner: None,
+            decision: None,
+            view: None,
             shapes,
             begun,
-            accepted,
+            accepted: None,
             before: vec![],
-            gesture,
+            gesture: None,
             keys: 0,
         }
     }
@@ -72,10 +71,6 @@ impl Item {
             self.before.remove(0);
         }
         self.gesture = None;
-    }
-
-    pub(super) fn can_undo(&self) -> bool {
-        self.decision.is_some() || !self.before.is_empty()
     }
 
     pub(super) fn is_changed(&self) -> bool {
@@ -128,10 +123,6 @@ impl State {
     pub(super) fn ahead(&self) -> Option<usize> {
         let fresh = (0..self.items.len()).filter(|item| !self.trail.contains(item));
         fresh.min_by_key(|&item| (self.items[item].rank, self.items[item].photo, self.items[item].number))
-    }
-
-    pub(super) fn is_first(&self) -> bool {
-        self.at == 0
     }
 
     pub(super) fn say(&mut self, what: impl Into<String>) {

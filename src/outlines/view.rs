@@ -74,13 +74,13 @@ pub(super) fn now<'a>(set: &'a PhotoSet, state: &'a State) -> Now<'a> {
             width_px: short(frame.width_px),
             axis_deg: short(item.shape.axis.clockwise_deg()),
             fault: item.shape.outline().err().map(|fault| fault.to_string()),
-            can_undo: item.can_undo(),
+            can_undo: item.decision.is_some() || !item.before.is_empty(),
         }
     });
     Now {
         revision: state.revision,
         nail,
-        is_first: state.is_first(),
+        is_first: state.at == 0,
         accepted: decided(Decision::Accepted),
         rejected: decided(Decision::Rejected),
         doubtful_left: left(true),

@@ -237,14 +237,8 @@ impl PhotoSet {
                 self.fault(file, what);
                 return;
             }
-            self.photos.push(Photo {
-                pose: pose.to_owned(),
-                subject,
-                file,
-                path: path.to_owned(),
-                outline: None,
-                tone: None,
-            });
+            let (pose, path) = (pose.to_owned(), path.to_owned());
+            self.photos.push(Photo { pose, subject, file, path, outline: None, tone: None });
         } else if let Some(kind) = extension(path).filter(|e| OTHER_PICTURES.contains(&e.as_str())) {
             self.fault(file, format!(".{kind} is not read; export it as PNG, TIFF, BMP or JPEG"));
         }
@@ -350,17 +344,15 @@ impl PhotoSet {
             number.parse::<u32>().ok().filter(|_| names.contains(&(photo.pose.clone(), stem.to_owned())))?;
             Some(stem.to_owned())
         };
-        let (clashing, clear): (Vec<_>, Vec<_>) =
-            std::mem::take(&mut self.photos).into_iter().partition(|p| clashes(p).is_some());
-        self.photos = clear;
-        for photo in clashing {
-            let stem = clashes(&photo).unwrap_or_default();
+        for photo in std::mem::take(&mut self.photos) {
+            let Some(stem) = clashes(&photo) else {
+                self.photos.push(photo);
+                continue;
+            };
+            let Photo { subject, file, .. } = photo;
             self.fault(
-                photo.file,
-                format!(
-                    "subject `{}` could be taken for a nail of subject `{stem}`; rename one of them",
-                    photo.subject
-                ),
+                file,
+                format!("subject `{subject}` could be taken for a nail of subject `{stem}`; rename one of them"),
             );
         }
     }

@@ -221,14 +221,8 @@ fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Resul
     let mut polygons: Vec<Polygon<f64>> = Vec::new();
     for (label, region) in (1_u32..).zip(&regions) {
         polygons.extend(region.rings(|x, y| match labels[(y * size[0] + x) as usize] {
-            own if own == label => {
-                if white {
-                    f64::from(values.get_pixel(x, y).0[0] / full)
-                } else {
-                    1.0
-                }
-            }
-            0 if white => f64::from(values.get_pixel(x, y).0[0] / full),
+            own if white && (own == label || own == 0) => f64::from(values.get_pixel(x, y).0[0] / full),
+            own if own == label => 1.0,
             _ => 0.0,
         }));
     }

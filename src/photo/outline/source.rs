@@ -12,8 +12,8 @@ use thiserror::Error;
 use super::annotated::{self, Annotated, AnnotationFault, Drawn};
 use super::axis::{Verdict, agree, turned_since, verdict};
 use super::{
-    Axis, DetectOptions, Detected, MaskFault, MaskValues, NothingFound, Outline, Refused, Side, detect, find_axes,
-    find_axes_towards, outlines_from_mask, outlines_of_values,
+    Axis, DetectOptions, Detected, FoundAxis, MaskFault, MaskValues, NothingFound, Outline, Refused, Side, detect,
+    find_axes, find_axes_towards, outlines_from_mask, outlines_of_values,
 };
 use crate::photo::set::Photo;
 use crate::photograph::{MOST_MEGAPIXELS, PICTURES, Photograph, ReadFault, is_picture};
@@ -102,6 +102,11 @@ pub struct Nail {
 impl Nail {
     fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Self {
         Self { source, outline: Some(outline), axis, confidence: Some(1.0), slants_deg: None, reason: String::new() }
+    }
+
+    /// Leaves it out.
+    fn doubt(&mut self, reason: String) {
+        (self.reason, self.confidence) = (reason, None);
     }
 
     fn left_out(source: Source, reason: String) -> Self {
@@ -263,8 +268,7 @@ impl OutlineOptions {
         self.complete_axes(picture, &mut nails);
         for (nail, why) in nails.iter_mut().zip(too_large) {
             if let Some(why) = why {
-                nail.reason = format!("{why} Erase it from the mask where it is.");
-                nail.confidence = None;
+                nail.doubt(format!("{why} Erase it from the mask where it is."));
             }
         }
         if nails.is_empty() && regions.dropped.is_empty() {
@@ -290,13 +294,9 @@ impl OutlineOptions {
             );
             (n, reason)
         });
-        let nail = |(n, reason): (Detected, String)| Nail {
-            source: Source::Detected,
-            outline: Some(n.outline),
-            axis: Some(n.axis),
-            confidence: Some(n.confidence),
-            slants_deg: None,
-            reason,
+        let nail = |(n, reason): (Detected, String)| {
+            let drawn = Nail::drawn(Source::Detected, n.outline, Some(n.axis));
+            Nail { confidence: Some(n.confidence), reason, ..drawn }
         };
         Ok(Listed { nails: used.chain(doubtful).map(nail).collect(), refused, image_path: None })
     }
@@ -312,15 +312,11 @@ impl OutlineOptions {
                 nails[k].axis = Some(axis);
                 let Some(outline) = &nails[k].outline else { continue };
                 if let (Verdict::Contradicts(found), _) = verdict(&picture.image, outline, axis) {
-                    nails[k].reason = format!(
-                        "by --distal its axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; \
-                         clockwise from up); \
-                         draw its `axis` in LabelMe, and where both are given alike they are believed",
-                        axis.clockwise_deg(),
-                        found.axis.clockwise_deg(),
-                        found.confidence
-                    );
-                    nails[k].confidence = None;
+                    nails[k].doubt(format!(
+                        "by --distal its {}; draw its `axis` in LabelMe, and where both are given alike they are \
+                         believed",
+                        contradicted(axis, &found)
+                    ));
                 }
             }
         } else if !outlines.is_empty() {
@@ -330,10 +326,7 @@ impl OutlineOptions {
                         nails[k].axis = Some(found.axis);
                         nails[k].confidence = Some(found.confidence);
                     }
-                    Err(unknown) => {
-                        nails[k].confidence = None;
-                        nails[k].reason = unknown.to_string();
-                    }
+                    Err(unknown) => nails[k].doubt(unknown.to_string()),
                 }
             }
         }
@@ -360,14 +353,10 @@ impl OutlineOptions {
                 Verdict::Silent => sure = false,
                 Verdict::Contradicts(found) => {
                     sure = false;
-                    nail.reason = format!(
-                        "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise \
-                         from up); correct the line, or, where it is right, say --distal as well",
-                        axis.clockwise_deg(),
-                        found.axis.clockwise_deg(),
-                        found.confidence
-                    );
-                    nail.confidence = None;
+                    nail.doubt(format!(
+                        "its drawn {}; correct the line, or, where it is right, say --distal as well",
+                        contradicted(axis, &found)
+                    ));
                 }
             }
         }
@@ -389,6 +378,13 @@ impl OutlineOptions {
             nails[k].confidence = None;
         }
     }
+}
+
+/// A nail's axis and what the picture says of it, in words.
+fn contradicted(axis: Axis, found: &FoundAxis) -> String {
+    let [deg, found_deg] = [axis, found.axis].map(Axis::clockwise_deg);
+    let sure = found.confidence;
+    format!("axis is at {deg:.0} degrees, by the picture at {found_deg:.0} (confidence {sure:.2}; clockwise from up)")
 }
 
 /// A confidence in words, cut off rather than rounded: 0.499 is less than 0.5.

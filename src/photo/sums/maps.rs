@@ -94,9 +94,7 @@ impl Sums {
             }
         }
         let more = u32::try_from(pictures.len()).expect("a batch");
-        for count in &mut self.count {
-            *count += more;
-        }
+        self.count.iter_mut().for_each(|count| *count += more);
     }
 
     fn add_seen(&mut self, levels: impl Iterator<Item = Option<u64>>) {
@@ -125,15 +123,9 @@ impl Sums {
         self.subjects.extend(other.subjects.iter().cloned());
         self.grey.extend(other.grey.iter().cloned());
         self.looks.extend(other.looks.iter().map(|(subject, look)| (subject.clone(), look.clone())));
-        for (a, b) in self.sum.iter_mut().zip(&other.sum) {
-            *a += b;
-        }
-        for (a, b) in self.sum_sq.iter_mut().zip(&other.sum_sq) {
-            *a += b;
-        }
-        for (a, b) in self.count.iter_mut().zip(&other.count) {
-            *a += b;
-        }
+        self.sum.iter_mut().zip(&other.sum).for_each(|(a, b)| *a += b);
+        self.sum_sq.iter_mut().zip(&other.sum_sq).for_each(|(a, b)| *a += b);
+        self.count.iter_mut().zip(&other.count).for_each(|(a, b)| *a += b);
         Ok(())
     }
 
