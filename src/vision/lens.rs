@@ -138,12 +138,7 @@ pub(crate) fn project(points: &[[f64; 3]], pose: &Pose, lens: &Intrinsics) -> Re
         0.0,
     )
     .map_err(VisionError::of(CALL))?;
-    let shown: Vec<[f64; 2]> = shown
-        .data_typed::<opencv::core::Point2d>()
-        .map_err(VisionError::of(CALL))?
-        .iter()
-        .map(|p| [p.x, p.y])
-        .collect();
+    let shown = places(CALL, &shown)?;
     if shown.len() != points.len() || jacobian.rows() as usize != 2 * points.len() {
         return Err(VisionError::lacking(CALL, format!("{} of {} points", shown.len(), points.len())));
     }
@@ -158,16 +153,29 @@ pub(crate) fn project(points: &[[f64; 3]], pose: &Pose, lens: &Intrinsics) -> Re
 /// Where a camera of the same focal lengths and axis, without distortion, would show points (`undistortPoints`, with as
 /// many steps as it takes).
 pub(crate) fn undistorted(points: &[[f64; 2]], lens: &Intrinsics) -> Result<Vec<[f64; 2]>, VisionError> {
+    let end = TermCriteria_Type::COUNT as i32 | TermCriteria_Type::EPS as i32;
+    undistorted_until(points, lens, TermCriteria::new(end, 5000, 1e-15))
+}
+
+fn undistorted_until(
+    points: &[[f64; 2]],
+    lens: &Intrinsics,
+    end: opencv::Result<TermCriteria>,
+) -> Result<Vec<[f64; 2]>, VisionError> {
     const CALL: &str = "undistortPoints";
     let (matrix, mut there) = (lens.matrix(), Mat::default());
-    let end = TermCriteria_Type::COUNT as i32 | TermCriteria_Type::EPS as i32;
-    let end = TermCriteria::new(end, 5000, 1e-15).map_err(VisionError::of(CALL))?;
+    let end = end.map_err(VisionError::of(CALL))?;
     let (matrix, none) = (view(3, 3, &matrix)?, opencv::core::no_array());
     let seen = view(points.len(), 2, points.as_flattened())?;
     calib3d::undistort_points_iter(&seen, &mut there, &matrix, &view(1, 5, &lens.distortion)?, &none, &matrix, end)
         .map_err(VisionError::of(CALL))?;
-    let there = there.data_typed::<opencv::core::Point2d>().map_err(VisionError::of(CALL))?;
-    Ok(there.iter().map(|at| [at.x, at.y]).collect())
+    places(CALL, &there)
+}
+
+/// The points of a matrix of them.
+fn places(call: &'static str, mat: &Mat) -> Result<Vec<[f64; 2]>, VisionError> {
+    let all = mat.data_typed::<opencv::core::Point2d>().map_err(VisionError::of(call))?;
+    Ok(all.iter().map(|at| [at.x, at.y]).collect())
 }
 
 /// The numbers of a matrix of doubles.
@@ -207,15 +215,8 @@ pub(crate) fn opencvs_sd(
     numbers("calibrateCameraExtended", lens_sd)
 }
 
-/// The same as users of OpenCV call it: with five steps.
+/// The same with the five steps that OpenCV takes by default.
 #[cfg(test)]
 pub(crate) fn undistorted_by_default(points: &[[f64; 2]], lens: &Intrinsics) -> Result<Vec<[f64; 2]>, VisionError> {
-    const CALL: &str = "undistortPoints";
-    let (matrix, mut there) = (lens.matrix(), Mat::default());
-    let (matrix, none) = (view(3, 3, &matrix)?, opencv::core::no_array());
-    let seen = view(points.len(), 2, points.as_flattened())?;
-    calib3d::undistort_points(&seen, &mut there, &matrix, &view(1, 5, &lens.distortion)?, &none, &matrix)
-        .map_err(VisionError::of(CALL))?;
-    let there = there.data_typed::<opencv::core::Point2d>().map_err(VisionError::of(CALL))?;
-    Ok(there.iter().map(|at| [at.x, at.y]).collect())
+    undistorted_until(points, lens, TermCriteria::new(TermCriteria_Type::COUNT as i32, 5, 0.01))
 }

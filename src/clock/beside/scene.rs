@@ -74,12 +74,15 @@ pub(super) struct Scene<'a> {
     /// First row below the digits.
     bottom: f64,
     height: f64,
+    /// How far off their lines and height digits may be.
+    slack: f64,
 }
 
 impl<'a> Scene<'a> {
     pub(super) fn new(gray: &'a Gray, cells: &'a Cells) -> Self {
         let [top, bottom] = cells.line.map(f64::from);
-        Self { gray, cells, page: OnceCell::new(), top, bottom, height: bottom - top }
+        let height = bottom - top;
+        Self { gray, cells, page: OnceCell::new(), top, bottom, height, slack: (UNEVEN * height).max(1.5) }
     }
 
     /// The runs of ink beside a cell that can be characters on the digits' line, the nearest first.
@@ -185,9 +188,8 @@ impl<'a> Scene<'a> {
 
     /// Whether a run is as high as the digits and where they are.
     fn is_aligned(&self, run: &Run) -> bool {
-        let slack = (UNEVEN * self.height).max(1.5);
-        (run.top as f64 - self.top).abs() <= slack
-            && ((run.bottom + 1) as f64 - self.bottom).abs() <= slack
+        (run.top as f64 - self.top).abs() <= self.slack
+            && ((run.bottom + 1) as f64 - self.bottom).abs() <= self.slack
             && run.width() as f64 <= WIDEST * self.height
     }
 
@@ -208,15 +210,14 @@ impl<'a> Scene<'a> {
     /// Whether a run may be an old-style figure beside figures that reach up or down otherwise. Its top is no lower
     /// than theirs, for a letter or icon beside others often is.
     fn is_old_style(&self, run: &Run) -> bool {
-        let slack = (UNEVEN * self.height).max(1.5);
         let [up, down] = [self.top - run.top as f64, (run.bottom + 1) as f64 - self.bottom];
         let most = OLD_STYLE * self.height;
         let wide = run.width() as f64;
-        (-slack..=most).contains(&up)
+        (-self.slack..=most).contains(&up)
             && (-most..=most).contains(&down)
             && up.min(down) <= (BEYOND_BOTH * self.height).max(1.0)
             && tall(run) >= LOW_FIGURE * self.height
-            && (tall(run) <= self.height + slack || wide >= NARROWEST_LONG * tall(run))
+            && (tall(run) <= self.height + self.slack || wide >= NARROWEST_LONG * tall(run))
             && wide <= WIDEST * self.height
     }
 
@@ -241,10 +242,7 @@ impl<'a> Scene<'a> {
         let ink = |&value: &f32| (value > limit) == (levels.ink > levels.background);
         let free = |y: &usize| !self.gray.row(*y)[run.left..=run.right].iter().any(ink);
         let apart = (run.top..=run.bottom).filter(free).count() as f64;
-        let inside = top > self.top
-            && top < middle
-            && bottom > middle
-            && bottom <= self.bottom + (UNEVEN * self.height).max(1.5);
+        let inside = top > self.top && top < middle && bottom > middle && bottom <= self.bottom + self.slack;
         (inside && apart >= DOTS_APART * tall(run)).then_some(':')
     }
 

@@ -9,6 +9,7 @@ use crate::phantom::motion::contacts::Contacts;
 use crate::phantom::motion::force::ForceTrajectory;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::request::{parse_gap, parse_percent, parse_set_clock};
+use crate::phantom::scene::place::is_default;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::{Ambient, CHANNELS, DisturbanceSizes, Disturbances, Dynamics, Wander};
 
@@ -25,10 +26,11 @@ pub enum Stamps {
 }
 
 /// What a photodiode's volts come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum SensorModel {
     /// Formulae of each photodiode's own, after the words of section 3.3
+    #[default]
     Formulae,
     /// The colour of the nail's zones below it, as photographs and videos of the nail show them (4.2)
     Nail,
@@ -49,7 +51,7 @@ pub struct LogOptions {
     pub session: u32,
     /// What the volts come from.
     #[arg(skip = SensorModel::Formulae)]
-    #[serde(skip_serializing_if = "is_formulae")]
+    #[serde(skip_serializing_if = "is_default")]
     pub sensor: SensorModel,
     /// Where the photodiodes are, of [`SensorModel::Nail`]; none: [`Positions::thesis`].
     #[arg(skip)]
@@ -69,11 +71,11 @@ pub struct LogOptions {
     /// How well the finger follows: the standard deviation of its error as a share; 0: it does exactly what is
     /// prompted, without a lag.
     #[arg(skip)]
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "is_default")]
     pub follow: f64,
     /// How far off straight it touches or rests at most, radians.
     #[arg(skip)]
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "is_default")]
     pub posture_shift_rad: f64,
     /// From the video's first frame on.
     #[arg(skip = 10.0)]
@@ -144,7 +146,7 @@ pub struct LogOptions {
     pub forces: bool,
     /// The log has a column `contact`, as of an ideal switch under the finger.
     #[arg(skip)]
-    #[serde(skip_serializing_if = "is_false")]
+    #[serde(skip_serializing_if = "is_default")]
     pub contact: bool,
     /// P2 and P3 are amplified so much that a fifth of what they should read is over 10 V.
     #[arg(skip)]
@@ -154,21 +156,8 @@ pub struct LogOptions {
     pub dead: Vec<usize>,
 }
 
-/// Columns that are absent need no settings.
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-fn is_formulae(value: &SensorModel) -> bool {
-    *value == SensorModel::Formulae
-}
-
 fn is_true(value: &bool) -> bool {
     *value
-}
-
-fn is_false(value: &bool) -> bool {
-    !*value
 }
 
 impl LogOptions {

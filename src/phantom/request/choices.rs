@@ -52,8 +52,7 @@ pub(super) fn parse_hide(text: &str) -> Result<Hide, String> {
 }
 
 pub(super) fn parse_leave(text: &str) -> Result<Leave, String> {
-    let (frame, frames) = parse_span(text).ok_or_else(|| format!("`{text}` is not FRAME+N, as 60+20"))?;
-    Ok(Leave { frame, frames })
+    parse_span_of_frames(text).map(|[frame, frames]| Leave { frame, frames })
 }
 
 pub(in crate::phantom) fn parse_span_of_frames(text: &str) -> Result<[usize; 2], String> {

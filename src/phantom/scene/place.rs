@@ -85,6 +85,11 @@ pub fn write_record(path: &Path, record: &impl Serialize) -> Result<(), Unwritte
     std::fs::write(path, text).map_err(refused(path))
 }
 
+/// Whether a record leaves a choice out, as before there was one.
+pub(in crate::phantom) fn is_default<C: Default + PartialEq>(choice: &C) -> bool {
+    *choice == C::default()
+}
+
 /// A hidden folder beside `out` for `names`, unless some of them are there and not `whose`: as [`in_the_way`].
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use crate::phantom::scene::place::is_default;
 use crate::video::{Codec, Matrix};
 
 /// How R'G'B' are encoded, as the command line has it.
@@ -34,7 +35,7 @@ pub enum ColourMatrix {
 pub struct Coding {
     /// Codec of the video
     #[arg(long, value_enum, default_value = "h264")]
-    #[serde(skip_serializing_if = "Coding::is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub codec: Codec,
     /// x264's preset, or x265's of the same name
     #[arg(long = "x264", value_name = "PRESET", default_value = "medium", value_parser = Coding::PRESETS)]
@@ -42,7 +43,7 @@ pub struct Coding {
     pub preset: String,
     /// The video's colour matrix
     #[arg(long, value_enum, default_value = "709")]
-    #[serde(skip_serializing_if = "Coding::is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub matrix: ColourMatrix,
 }
 
@@ -73,10 +74,5 @@ impl Coding {
             ColourMatrix::Hlg => Matrix::HLG,
             ColourMatrix::Pq => Matrix::PQ,
         }
-    }
-
-    /// Whether a record leaves a choice out, as before there was one.
-    pub(in crate::phantom) fn is_default<C: Default + PartialEq>(choice: &C) -> bool {
-        *choice == C::default()
     }
 }

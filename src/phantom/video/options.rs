@@ -2,11 +2,12 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Coding, Lens, Oblique, Siting};
+use super::{Lens, Oblique, Siting};
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, JOINTS, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::scene::lens::Mapping;
+use crate::phantom::scene::place::is_default;
 use crate::phantom::screen::Clock;
 use crate::video::{Codec, Format, Matrix, Turn};
 
@@ -188,7 +189,7 @@ pub struct VideoOptions {
     /// Bits a sample: 8 or 10.
     pub depth: u32,
     /// What it is encoded in.
-    #[serde(skip_serializing_if = "Coding::is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub codec: Codec,
     /// The encoder's constant rate factor.
     pub crf: u32,
