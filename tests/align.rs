@@ -251,6 +251,14 @@ fn the_plan_changes_nothing() {
     for words in ["ambient light subtracted", "left out", "no column `led`", "only --sync correlate"] {
         assert!(plan.contains(words), "`{words}` in:\n{plan}");
     }
+    // What is drawn and exported is known before it is said where the set goes.
+    let step = |options: &str, name: &str| {
+        let plan = dir.words(&format!("align --joints joints.csv --log s/log.csv --plan {options}")).expect(0).stdout;
+        let step = plan.lines().find(|line| line.starts_with(name)).expect("a step").to_owned();
+        step.contains(" run ")
+    };
+    assert!(step("", "figures") && !step("--no-figures", "figures"));
+    assert!(step("--mot j.mot", "OpenSim") && !step("", "OpenSim"));
     let stands = dir.bytes_of(".");
     dir.words("align --joints joints.csv --log s/log.csv --out t/training.csv --plan").expect(0);
     assert_eq!(dir.bytes_of("."), stands);

@@ -316,7 +316,7 @@ fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
 fn a_plan_writes_nothing() {
     let dir = Dir::new();
     dir.write("trials.csv", by_hand());
-    run(&dir, &format!("trials.csv {COURSE} --plan")).expect(0).prints("learning curves").prints("no --out");
+    run(&dir, &format!("trials.csv {COURSE} --plan")).expect(0).prints("learning curves").prints("by operator");
     run(&dir, &format!("trials.csv {COURSE} --no-figures --out o")).expect(0);
     assert!(!dir.path("o/performance-methods.png").exists() && dir.path("o/performance.json").is_file());
 }

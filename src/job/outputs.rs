@@ -25,12 +25,6 @@ impl Outputs {
         Self { out, rows: true, figures: true, report: true }
     }
 
-    /// Those of a command that may draw no pictures; none where it has no place for them.
-    #[must_use]
-    pub fn of(out: Option<&PathBuf>, figures: bool) -> Option<Self> {
-        Some(Self { figures, ..Self::all(out?.clone()) })
-    }
-
     /// A step of plans for the pictures; `what` they show.
     #[must_use]
     pub fn figures_step(outputs: Option<&Self>, what: &str) -> Step {

@@ -76,7 +76,7 @@ pub fn run(
         certificate,
         labels: LabelReport::of(&labels),
     };
-    let left_out = left_out(steps(&Foreknown::of(&posture, &log), options, Some(outputs)));
+    let left_out = left_out(steps(&Foreknown::of(&posture, &log), options, outputs));
     let notes = [notes, exported].concat();
     let mut report = Report { left_out, warnings, notes, pictures, ..Report::new("align", watch, figures) };
     if tie.method != TieMethod::Correlate {

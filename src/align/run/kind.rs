@@ -116,7 +116,7 @@ impl Job for AlignJob {
             photodiodes: header.map(|header| header.photodiodes),
             ..Foreknown::default()
         };
-        Ok(steps(&known, &self.options, Some(&self.outputs(demand, Path::new("")))))
+        Ok(steps(&known, &self.options, &self.outputs(demand, Path::new(""))))
     }
 
     fn facts(&self, inputs: &[Foreseen], _demand: &Demand) -> Facts {

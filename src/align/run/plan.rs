@@ -6,15 +6,11 @@ use crate::align::posture::Posture;
 use crate::log::Log;
 use crate::stages::Step;
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// [`AlignError`] where the table of angles or the log can't be read.
-pub fn plan(
-    inputs: &AlignInputs,
-    options: &AlignOptions,
-    outputs: Option<&AlignOutputs>,
-) -> Result<Vec<Step>, AlignError> {
+pub fn plan(inputs: &AlignInputs, options: &AlignOptions, outputs: &AlignOutputs) -> Result<Vec<Step>, AlignError> {
     let posture = Posture::read(&inputs.joints)?;
     let log = Log::read(&inputs.log, &options.log.columns)?;
     Ok(steps(&Foreknown::of(&posture, &log), options, outputs))
@@ -50,7 +46,7 @@ impl Foreknown {
 }
 
 /// The one table of steps: the plan shows them, a run's report lists those that are left out.
-pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs: Option<&AlignOutputs>) -> Vec<Step> {
+pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs: &AlignOutputs) -> Vec<Step> {
     let sync = options.sync.or_else(|| (known.clock != Some(false)).then_some(Sync::Clock));
     let joints = known.joints.as_ref().map_or("all".to_owned(), |joints| joints.join(", "));
     let frames = known.frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
@@ -59,7 +55,7 @@ pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs
         Some(true) => Step::new(step, true, option.to_owned()),
         _ => Step::new(step, false, "not asked for".to_owned()),
     };
-    let figures = outputs.is_none_or(|o| o.figures);
+    let figures = outputs.figures;
     vec![
         Step::new("labels of joints", true, format!("{joints} from {frames}")),
         Step::new(
@@ -95,9 +91,9 @@ pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs
             sync != Some(Sync::Correlate),
             if sync == Some(Sync::Correlate) { "they make it" } else { "do they follow the angles?" }.to_owned(),
         ),
-        asked("OpenSim motion file", outputs.map(|o| o.mot.is_some()), "--mot"),
-        asked("BIDS Motion folder", outputs.map(|o| o.bids.is_some()), "--bids"),
-        asked("DeepLabCut table", outputs.map(|o| o.dlc.is_some()), "--dlc"),
+        asked("OpenSim motion file", Some(outputs.mot.is_some()), "--mot"),
+        asked("BIDS Motion folder", Some(outputs.bids.is_some()), "--bids"),
+        asked("DeepLabCut table", Some(outputs.dlc.is_some()), "--dlc"),
         Step::figures(figures, "of the tie and of the labels"),
     ]
 }

@@ -67,7 +67,7 @@ pub fn run(
     let videos = files.iter().filter(|file| !is_picture(file)).count();
     let counts = Some([files.len() - videos, videos]);
     let mut report = Report {
-        left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
+        left_out: left_out(steps(counts, inputs.plane.is_some(), options, outputs)),
         warnings: [copied, warnings(&fitted, &views, figures.covered, options.board), held].concat(),
         notes,
         failed,

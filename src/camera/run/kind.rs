@@ -25,10 +25,10 @@ impl Job for CameraOptions {
         let outputs = demand.outputs(CAMERA);
         let plane = Foreseen::of(inputs, "plane").map(|input| input.path.clone());
         if inputs.iter().any(|input| !input.exists) {
-            return Ok(steps(None, plane.is_some(), self, Some(&outputs)));
+            return Ok(steps(None, plane.is_some(), self, &outputs));
         }
         let views = inputs.iter().filter(|input| input.role == "views").map(|input| input.path.clone()).collect();
-        plan(&Inputs { views, plane }, self, Some(&outputs)).map_err(|why| why.to_string())
+        plan(&Inputs { views, plane }, self, &outputs).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -7,11 +7,11 @@ use crate::job::Outputs;
 use crate::photograph::is_picture;
 use crate::stages::Step;
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// A folder that can't be listed or holds no photographs.
-pub fn plan(inputs: &Inputs, options: &CameraOptions, outputs: Option<&Outputs>) -> Result<Vec<Step>, CameraError> {
+pub fn plan(inputs: &Inputs, options: &CameraOptions, outputs: &Outputs) -> Result<Vec<Step>, CameraError> {
     let files = files(&inputs.views)?;
     let videos = files.iter().filter(|file| !is_picture(file)).count();
     Ok(steps(Some([files.len() - videos, videos]), inputs.plane.is_some(), options, outputs))
@@ -23,7 +23,7 @@ pub(in crate::camera) fn steps(
     counts: Option<[usize; 2]>,
     has_plane: bool,
     options: &CameraOptions,
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
 ) -> Vec<Step> {
     let [photographs, videos] = counts.unwrap_or([1, 1]);
     let said = |count: usize, what: String| match counts {
@@ -31,7 +31,7 @@ pub(in crate::camera) fn steps(
         Some(_) if count == 0 => "there are none".to_owned(),
         Some(_) => what,
     };
-    let figures = outputs.is_none_or(|outputs| outputs.figures);
+    let figures = outputs.figures;
     let held = match options.coefficients {
         5 => "",
         4 => ", k3 held at 0",

@@ -18,23 +18,19 @@ use crate::words::Words;
 /// The picture's name, after the table's.
 const PICTURE: &str = "static";
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// What is wrong with the options or the file of parameters.
-pub fn plan(
-    params: Option<&Path>,
-    options: &CurveOptions,
-    outputs: Option<&Outputs>,
-) -> Result<Vec<Step>, HemodynamicsError> {
+pub fn plan(params: Option<&Path>, options: &CurveOptions, outputs: &Outputs) -> Result<Vec<Step>, HemodynamicsError> {
     let parameters = options.model.parameters(params)?;
     blood(options, &parameters)?;
     Ok(steps(options, outputs, Some(parameters.units().len())))
 }
 
 /// The one table of steps; `units` are known once the parameters are.
-pub(super) fn steps(options: &CurveOptions, outputs: Option<&Outputs>, units: Option<usize>) -> Vec<Step> {
-    let pictures = outputs.is_none_or(|outputs| outputs.figures);
+pub(super) fn steps(options: &CurveOptions, outputs: &Outputs, units: Option<usize>) -> Vec<Step> {
+    let pictures = outputs.figures;
     let loads = options.range.loads.loads_pa().len();
     let units = units.map_or(String::new(), |units| format!("{units} units, "));
     vec![
@@ -120,7 +116,7 @@ pub fn curve(
         closed_pa,
         parameters: named(&parameters),
     };
-    let left_out = left_out(steps(options, Some(outputs), Some(units)));
+    let left_out = left_out(steps(options, outputs, Some(units)));
     let mut report = Report { left_out, pictures, ..Report::new("simulate --static", watch, figures) };
     if range.loads.from_pa < 0.0 {
         report.notes.push(format!("--static: loads begin at {} Pa: {SUCTION}", range.loads.from_pa));

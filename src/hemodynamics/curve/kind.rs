@@ -12,17 +12,17 @@ impl Job for CurveOptions {
     const KIND: Kind = Kind::of::<Self>("static", &[PARAMS], &[Part::new("curve", TABLE), Part::pictures("")]);
 
     fn checked(self) -> Result<Self, OptionFault> {
-        plan(None, &self, None).map_err(OptionFault::whole)?;
+        plan(None, &self, &Demand::default().outputs("")).map_err(OptionFault::whole)?;
         Ok(self)
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = demand.outputs(TABLE);
         if !existing(inputs) {
-            return Ok(steps(self, Some(&outputs), self.model.units.map(usize::from)));
+            return Ok(steps(self, &outputs, self.model.units.map(usize::from)));
         }
         let params = of_foreseen(PARAMS.name, inputs);
-        plan(params.as_deref(), self, Some(&outputs)).map_err(|why| why.to_string())
+        plan(params.as_deref(), self, &outputs).map_err(|why| why.to_string())
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {

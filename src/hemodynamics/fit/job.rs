@@ -32,17 +32,13 @@ impl Ready {
     }
 }
 
-/// Plans a fit; `outputs` may be open yet.
+/// Plans a fit; `outputs` may have no place yet.
 ///
 /// # Errors
 /// What is wrong with the options or the recordings.
-pub fn plan(
-    inputs: &FitInputs,
-    options: &FitOptions,
-    outputs: Option<&Outputs>,
-) -> Result<Vec<Step>, HemodynamicsError> {
+pub fn plan(inputs: &FitInputs, options: &FitOptions, outputs: &Outputs) -> Result<Vec<Step>, HemodynamicsError> {
     let ready = ready(inputs, options)?;
-    if let Some(outputs) = outputs {
+    if !outputs.out.as_os_str().is_empty() {
         places(inputs, options, outputs)?;
     }
     Ok(steps(inputs, options, outputs, ambient(inputs, options), Some(ready.samples())))
@@ -82,11 +78,11 @@ fn ambient(inputs: &FitInputs, options: &FitOptions) -> Step {
 pub(super) fn steps(
     inputs: &FitInputs,
     options: &FitOptions,
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
     ambient: Step,
     samples: Option<usize>,
 ) -> Vec<Step> {
-    let pictures = outputs.is_none_or(|outputs| outputs.figures);
+    let pictures = outputs.figures;
     let samples = samples.map_or(String::new(), |samples| format!(", {samples} samples"));
     let (free, recordings) = (options.free().len(), inputs.recordings.len());
     let held = options.calibrate == Calibration::Fixed;
@@ -203,7 +199,7 @@ pub fn fit(
         parameter_files,
         table,
     };
-    let left_out = left_out(steps(inputs, options, Some(outputs), ambient(inputs, options), Some(ready.samples())));
+    let left_out = left_out(steps(inputs, options, outputs, ambient(inputs, options), Some(ready.samples())));
     let warnings = warnings(&result, &ready.recordings);
     let notes = notes(&ready.recordings, outputs.figures);
     let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };

@@ -65,10 +65,10 @@ impl Job for FitOptions {
         };
         let outputs = demand.outputs("fit.json");
         if existing(inputs) {
-            return plan(&files, self, Some(&outputs)).map_err(|why| why.to_string());
+            return plan(&files, self, &outputs).map_err(|why| why.to_string());
         }
         let ambient = ambient_step(inputs, &[RECORDINGS], &self.columns.log);
-        Ok(steps(&files, self, Some(&outputs), ambient, None))
+        Ok(steps(&files, self, &outputs, ambient, None))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -25,14 +25,14 @@ struct Ready {
     loads: ReadLoads,
 }
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// What is wrong with the options or the files.
 pub fn plan(
     inputs: &SimulateInputs,
     options: &SimulateOptions,
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
 ) -> Result<Vec<Step>, HemodynamicsError> {
     let ready = ready(inputs, options)?;
     Ok(steps(options, outputs, Some(ready.parameters.units().len())))
@@ -49,14 +49,14 @@ fn ready(inputs: &SimulateInputs, options: &SimulateOptions) -> Result<Ready, He
 }
 
 /// The one table of steps; `units` are known once the parameters are.
-pub(super) fn steps(options: &SimulateOptions, outputs: Option<&Outputs>, units: Option<usize>) -> Vec<Step> {
+pub(super) fn steps(options: &SimulateOptions, outputs: &Outputs, units: Option<usize>) -> Vec<Step> {
     let units = units.map_or(String::new(), |units| format!("{units} units, "));
     let start = match &options.start {
         None => "of the loads just before t = 0".to_owned(),
         Some(Start::Zero) => "--from zero: no displacement, no velocity".to_owned(),
         Some(Start::File(path)) => format!("--from: the last row of {}", path.display()),
     };
-    let pictures = outputs.is_none_or(|outputs| outputs.figures);
+    let pictures = outputs.figures;
     vec![
         Step::new("equilibrium to start from", options.start.is_none(), start),
         Step::new("run", true, format!("{units}{} rows, rtol {:e}", options.rows(), options.rtol)),
@@ -119,7 +119,7 @@ pub fn simulate(
         })?);
     }
     watch.go_on()?;
-    let left_out = left_out(steps(options, Some(outputs), Some(parameters.units().len())));
+    let left_out = left_out(steps(options, outputs, Some(parameters.units().len())));
     let figures = SimulateFigures {
         table: outputs.out.clone(),
         rows: response.rows() as u64,

@@ -45,7 +45,7 @@ impl Job for SimulateOptions {
             return Err(OptionFault { key: "from".to_owned(), what });
         }
         // The numbers are checked with the parameters, which may be a file's: a fault with the thesis' is one with any.
-        plan(&SimulateInputs::default(), &self, None).map_err(OptionFault::whole)?;
+        plan(&SimulateInputs::default(), &self, &Demand::default().outputs("")).map_err(OptionFault::whole)?;
         Ok(self)
     }
 
@@ -53,9 +53,9 @@ impl Job for SimulateOptions {
         let (files, options) = self.with(|role| of_foreseen(role, inputs))?;
         let outputs = demand.outputs(TABLE);
         if existing(inputs) {
-            plan(&files, &options, Some(&outputs)).map_err(|why| why.to_string())
+            plan(&files, &options, &outputs).map_err(|why| why.to_string())
         } else {
-            Ok(steps(&options, Some(&outputs), options.model.units.map(usize::from)))
+            Ok(steps(&options, &outputs, options.model.units.map(usize::from)))
         }
     }
 

@@ -138,7 +138,7 @@ pub fn run(
         }
     }
     let maps = matches!(&inputs.data[..], [one] if is_maps(&one.path));
-    let left_out = left_out(steps(inputs.data.len(), maps, options, Some(outputs)));
+    let left_out = left_out(steps(inputs.data.len(), maps, options, outputs));
     let mut report = Report { left_out, warnings, notes, pictures, ..Report::new("layout", watch, figures) };
     if maps {
         report.unused_input("positions", inputs.positions.is_some(), "maps of photographs have no photodiodes");

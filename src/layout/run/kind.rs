@@ -26,7 +26,7 @@ impl Job for LayoutOptions {
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let data: Vec<&Foreseen> = inputs.iter().filter(|input| input.role == "data").collect();
         let maps = matches!(&data[..], [one] if is_maps(&one.path));
-        Ok(steps(data.len(), maps, self, Some(&demand.outputs(""))))
+        Ok(steps(data.len(), maps, self, &demand.outputs("")))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -25,8 +25,8 @@ const REPORT: &str = "run.json";
 
 /// What would be done and what not.
 #[must_use]
-pub fn plan(outputs: Option<&Outputs>) -> Vec<Step> {
-    let rows = outputs.is_none_or(|outputs| outputs.rows);
+pub fn plan(outputs: &Outputs) -> Vec<Step> {
+    let rows = outputs.rows;
     let why = if rows { "of each row" } else { "not asked for" };
     vec![
         Step::new("read", true, "a table of trials".to_owned()),
@@ -34,7 +34,7 @@ pub fn plan(outputs: Option<&Outputs>) -> Vec<Step> {
         Step::new("learning curves", true, "exponential and power law".to_owned()),
         Step::new("comparison", true, "of each method with the baseline".to_owned()),
         Step::new("time per decision", rows, why.to_owned()),
-        Outputs::figures_step(outputs, "by operator, and means with curves"),
+        Step::figures(outputs.figures, "by operator, and means with curves"),
     ]
 }
 
@@ -77,7 +77,7 @@ pub fn run(
             draw("operators", &|png, svg| figures::draw_operators(&trials, png, svg))
         })?;
     }
-    let left_out = left_out(plan(Some(outputs)));
+    let left_out = left_out(plan(outputs));
     let (notes, warnings) = (notes(&figures, outputs), warnings(&trials, &course));
     let report = Report {
         left_out,

@@ -36,7 +36,7 @@ pub fn plan(
     recordings: usize,
     reference: bool,
     options: &SkillOptions,
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
 ) -> Result<Vec<Step>, LiveError> {
     let mut faults = options.faults();
     if reference && options.reference_trial.is_some() {
@@ -52,7 +52,7 @@ pub fn plan(
         Step::new("contacts", true, format!("from {} N on, to {} N", options.touch_n, options.release_n)),
         Step::new("distance from a reference", compared, why.to_owned()),
         Step::new("means", true, "over trials, and over people".to_owned()),
-        Outputs::figures_step(outputs, "forces by trial, figures over trials"),
+        Step::figures(outputs.figures, "forces by trial, figures over trials"),
     ])
 }
 
@@ -79,7 +79,7 @@ pub fn run(
 ) -> Result<SkillReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let steps = plan(inputs.recordings.len(), inputs.reference.is_some(), options, Some(outputs))?;
+    let steps = plan(inputs.recordings.len(), inputs.reference.is_some(), options, outputs)?;
     let folder = &outputs.out;
     let files = inputs.recordings.iter().chain(&inputs.reference).map(|one| &one.path);
     let mut places = Places::not_over(files);

@@ -33,7 +33,7 @@ impl Job for SkillOptions {
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let recordings = inputs.iter().filter(|input| input.role == "recordings").count();
         let reference = Foreseen::of(inputs, "reference").is_some();
-        plan(recordings, reference, self, Some(&demand.outputs(""))).map_err(|why| why.to_string())
+        plan(recordings, reference, self, &demand.outputs("")).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -66,7 +66,7 @@ pub fn evaluate_switch(
         warnings,
         notes,
         failed,
-        left_out: left_out(evaluate_plan(inputs.recordings.len(), Some(outputs))),
+        left_out: left_out(evaluate_plan(inputs.recordings.len(), outputs)),
         ..Report::new(
             "switch evaluate",
             watch,
@@ -130,12 +130,12 @@ fn write_presses(staging: &Staging, recordings: &[String], found: &[Vec<Match>])
 
 /// What would be done and what not.
 #[must_use]
-pub fn evaluate_plan(recordings: usize, outputs: Option<&Outputs>) -> Vec<Step> {
+pub fn evaluate_plan(recordings: usize, outputs: &Outputs) -> Vec<Step> {
     vec![
         Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
         Step::new("switch", true, "against true contact".to_owned()),
         Step::new("presses", true, "one row each".to_owned()),
-        Outputs::figures_step(outputs, "delays"),
+        Step::figures(outputs.figures, "delays"),
     ]
 }
 

@@ -55,7 +55,7 @@ impl Job for TuneOptions {
             .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        Ok(tune_plan(recordings(inputs), Some(&demand.outputs(""))))
+        Ok(tune_plan(recordings(inputs), &demand.outputs("")))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -80,7 +80,7 @@ impl Job for ContactOptions {
     .revision(6);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        Ok(evaluate_plan(recordings(inputs), Some(&demand.outputs(""))))
+        Ok(evaluate_plan(recordings(inputs), &demand.outputs("")))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -59,7 +59,7 @@ pub fn tune_switch(
         warnings,
         notes,
         failed,
-        left_out: left_out(tune_plan(inputs.recordings.len(), Some(outputs))),
+        left_out: left_out(tune_plan(inputs.recordings.len(), outputs)),
         ..Report::new(
             "switch tune",
             watch,
@@ -97,12 +97,12 @@ pub fn tune_switch(
 
 /// What would be done and what not.
 #[must_use]
-pub fn tune_plan(recordings: usize, outputs: Option<&Outputs>) -> Vec<Step> {
+pub fn tune_plan(recordings: usize, outputs: &Outputs) -> Vec<Step> {
     vec![
         Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
         Step::new("choose", true, "thresholds and holds".to_owned()),
         Step::new("held out", recordings > 1, "each recording judged by what the others choose".to_owned()),
-        Outputs::figures_step(outputs, "delay against false switches"),
+        Step::figures(outputs.figures, "delay against false switches"),
     ]
 }
 

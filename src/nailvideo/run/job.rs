@@ -432,7 +432,7 @@ impl Job<'_> {
             decoding_share: 0.0,
         };
         let mut report = Report {
-            left_out: left_out(steps(Some(self.info), self.inputs.outline.is_some(), self.options, Some(self.outputs))),
+            left_out: left_out(steps(Some(self.info), self.inputs.outline.is_some(), self.options, self.outputs)),
             ..Report::new("nailvideo", watch, figures)
         };
         report.notes.push(format!("presses.csv: {USE}"));

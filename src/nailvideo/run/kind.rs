@@ -59,10 +59,10 @@ impl Job for NailVideoJob {
         let at = |role: &str| Foreseen::of(inputs, role).map(|input| input.path.clone());
         let video = Foreseen::of(inputs, "video").filter(|video| video.exists);
         let Some(video) = video else {
-            return Ok(steps(None, at("outline").is_some(), &self.options, Some(&outputs)));
+            return Ok(steps(None, at("outline").is_some(), &self.options, &outputs));
         };
         let inputs = Inputs { video: video.path.clone(), outline: at("outline"), positions: at("positions") };
-        plan(&inputs, &self.options, Some(&outputs)).map_err(|why| why.to_string())
+        plan(&inputs, &self.options, &outputs).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

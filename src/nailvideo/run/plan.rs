@@ -4,11 +4,11 @@ use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
 use crate::stages::Step;
 use crate::video::{Info, Video, VideoError};
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// A video that can't be read.
-pub fn plan(inputs: &Inputs, options: &NailVideoOptions, outputs: Option<&Outputs>) -> Result<Vec<Step>, VideoError> {
+pub fn plan(inputs: &Inputs, options: &NailVideoOptions, outputs: &Outputs) -> Result<Vec<Step>, VideoError> {
     let video = Video::open(&inputs.video, options.threads)?;
     Ok(steps(Some(video.info()), inputs.outline.is_some(), options, outputs))
 }
@@ -23,13 +23,13 @@ pub(in crate::nailvideo) fn steps(
     info: Option<&Info>,
     outlined: bool,
     options: &NailVideoOptions,
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
 ) -> Vec<Step> {
     let decoding = info.map_or("all frames".to_owned(), Info::in_words);
     let light = light_of(info.is_some_and(|info| info.grey), options);
     let asked = |runs: bool, option: &str| if runs { "asked for".to_owned() } else { format!("no {option}") };
-    let frames = outputs.is_some_and(|outputs| outputs.frames);
-    let figures = outputs.is_none_or(|outputs| outputs.figures);
+    let frames = outputs.frames;
+    let figures = outputs.figures;
     vec![
         Step::new("decode", true, decoding),
         Step::new(

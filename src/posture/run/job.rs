@@ -244,7 +244,7 @@ fn left_out(
     outputs: &Outputs,
     tracker: &Tracker,
 ) -> Vec<String> {
-    let (steps, search) = (steps(&Known::of(layout, info), options, Some(outputs)), tracker.effort());
+    let (steps, search) = (steps(&Known::of(layout, info), options, outputs), tracker.effort());
     let mut left_out = stages::left_out(steps.into_iter().filter(|step| step.stage != WHOLE_FRAMES));
     left_out.push(format!(
         "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one says, {:.2} % of the samples",

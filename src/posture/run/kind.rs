@@ -109,13 +109,13 @@ impl Job for PostureJob {
             && markers.exists
         {
             let layout = self.layout(&markers.path, demand).map_err(|why| why.to_string())?;
-            return plan(&video.path, &layout, &options, Some(&outputs)).map_err(|why| why.to_string());
+            return plan(&video.path, &layout, &options, &outputs).map_err(|why| why.to_string());
         }
         let facts = |of: Option<&Foreseen>| of.map(|input| input.facts).unwrap_or_default();
         let (video, markers) = (facts(video), facts(markers));
         let distorted = video.distorted.or(markers.distorted);
         let known = Known { distorted, clock: video.clock.or(markers.clock), ..Known::default() };
-        Ok(steps(&known, &options, Some(&outputs)))
+        Ok(steps(&known, &options, &outputs))
     }
 
     fn facts(&self, inputs: &[Foreseen], demand: &Demand) -> Facts {

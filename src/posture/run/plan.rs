@@ -9,7 +9,7 @@ use crate::posture::options::{Outputs, PostureOptions};
 use crate::stages::Step;
 use crate::video::{Info, Video};
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// [`PostureError::Video`] where the video can't be read.
@@ -17,7 +17,7 @@ pub fn plan(
     video: &Path,
     layout: &Layout,
     options: &PostureOptions,
-    outputs: Option<&Outputs>,
+    outputs: &Outputs,
 ) -> Result<Vec<Step>, PostureError> {
     let info = Video::open(video, options.threads)?.info().clone();
     Ok(steps(&Known::of(layout, &info), options, outputs))
@@ -42,7 +42,7 @@ impl<'a> Known<'a> {
 }
 
 /// The one table of steps: the plan shows them, a run's report lists those that are left out.
-pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, outputs: Option<&Outputs>) -> Vec<Step> {
+pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, outputs: &Outputs) -> Vec<Step> {
     let asked = |stage: &'static str, wanted: bool, option: &str| {
         Step::new(stage, wanted, if wanted { option } else { "not asked for" }.to_owned())
     };
@@ -52,7 +52,7 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
         Some(false) => no.to_owned(),
         None => "as the marker file says".to_owned(),
     };
-    let figures = outputs.is_none_or(|o| o.figures);
+    let figures = outputs.figures;
     let mut steps = vec![
         Step::new("decoding", true, known.info.map_or("all frames".to_owned(), Info::in_words)),
         Step::new("markers tracked", true, tracked(known.layout, options)),
@@ -72,8 +72,8 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
         ),
         Step::new("clock", options.reads_clock() && known.clock != Some(false), clock(known, options)),
         asked("smoothing", options.smooth, "--smooth"),
-        asked("table of markers", outputs.is_some_and(|o| o.tracks.is_some()), "--tracks"),
-        asked("overlay", outputs.is_some_and(|o| o.overlay.is_some()), "--overlay"),
+        asked("table of markers", outputs.tracks.is_some(), "--tracks"),
+        asked("overlay", outputs.overlay.is_some(), "--overlay"),
         asked("figures", figures && known.layout.is_none_or(|layout| !layout.joints.is_empty()), "of the angles"),
     ]);
     steps
@@ -128,8 +128,8 @@ fn of_layout(layout: &Layout) -> [Step; 4] {
     ]
 }
 
-fn of_video(info: &Info, outputs: Option<&Outputs>) -> [Step; 4] {
-    let overlay = outputs.is_some_and(|o| o.overlay.is_some());
+fn of_video(info: &Info, outputs: &Outputs) -> [Step; 4] {
+    let overlay = outputs.overlay.is_some();
     [
         Step::new(
             "chroma planes",

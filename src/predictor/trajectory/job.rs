@@ -21,11 +21,11 @@ const ANGLE_DECIMALS: usize = 5;
 /// Rows between two looks at whether to stop.
 const AT_ONCE: usize = 1 << 20;
 
-/// Plans a run; `outputs` may be open yet.
+/// Plans a run; `outputs` may have no place yet.
 ///
 /// # Errors
 /// [`PredictorError::Request`].
-pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Vec<Step>, PredictorError> {
+pub fn plan(options: &TrajectoryOptions, outputs: &Outputs) -> Result<Vec<Step>, PredictorError> {
     let faults = faults(options);
     if !faults.is_empty() {
         return Err(PredictorError::Request(faults.join("; ")));
@@ -34,7 +34,7 @@ pub fn plan(options: &TrajectoryOptions, outputs: Option<&Outputs>) -> Result<Ve
     let of_forces = |what: &str| if force { what.to_owned() } else { "only of forces".to_owned() };
     let columns = if force { "time_s, Fx_N, Fy_N, Fz_N" } else { "time_s, J2_deg" };
     let spiral = matches!(options.kind, Kind::Force { .. });
-    let pictures = outputs.is_none_or(|outputs| outputs.figures);
+    let pictures = outputs.figures;
     Ok(vec![
         Step::new("table", true, format!("{} rows of {columns}", options.rows())),
         Step::new("rates", true, "how fast it is at most".to_owned()),
@@ -59,7 +59,7 @@ pub fn run(
 ) -> Result<TrajectoryReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let steps = plan(options, Some(outputs))?;
+    let steps = plan(options, outputs)?;
     TableFormat::of(&outputs.out)?;
     let motion = Motion::new(options)?;
     let (force, posture) = stages.time("figures of merit", || match &motion {

@@ -59,12 +59,12 @@ impl Job for TrajectoryOptions {
     };
 
     fn checked(self) -> Result<Self, OptionFault> {
-        plan(&self, None).map_err(OptionFault::whole)?;
+        plan(&self, &Demand::default().outputs("")).map_err(OptionFault::whole)?;
         Ok(self)
     }
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        plan(self, Some(&demand.outputs(TABLE))).map_err(|why| why.to_string())
+        plan(self, &demand.outputs(TABLE)).map_err(|why| why.to_string())
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {

@@ -8,7 +8,7 @@ use lunula::align::{self, AlignInputs, AlignOptions, AlignOutputs, AlignReport};
 use lunula::job::Given;
 use lunula::words::fixed;
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Label a photodiode log with joint angles: two clocks tied together, with a certificate of how well
@@ -59,15 +59,15 @@ impl AlignArgs {
         Ok(AlignInputs { joints: self.joints.clone(), log: self.log.clone(), tracks: self.tracks.clone() })
     }
 
-    fn outputs(&self) -> Option<AlignOutputs> {
-        Some(AlignOutputs {
-            training: self.results.out.clone()?,
+    fn outputs(&self) -> AlignOutputs {
+        AlignOutputs {
+            training: self.results.place(),
             mot: self.mot.clone(),
             bids: self.bids.clone(),
             dlc: self.dlc.clone(),
             figures: !self.results.no_figures,
             report: true,
-        })
+        }
     }
 }
 
@@ -75,8 +75,8 @@ pub(crate) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
     let options = &args.given.options;
     jobs::run(
         &args.results.request("align", "steps", &args.given.said),
-        || Ok(align::plan(&args.inputs()?, options, args.outputs().as_ref())?),
-        |watch| Ok(align::run(&args.inputs()?, options, &needed(args.outputs())?, watch)?),
+        || Ok(align::plan(&args.inputs()?, options, &args.outputs())?),
+        |watch| Ok(align::run(&args.inputs()?, options, &args.outputs(), watch)?),
         say,
     )
 }

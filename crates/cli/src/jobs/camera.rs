@@ -4,7 +4,7 @@ use clap::Args;
 use lunula::camera::{self, CameraOptions, CameraReport, Inputs};
 use lunula::job::Given;
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Measure a camera's lens from views of a chessboard, for the [camera] of a marker file
@@ -29,8 +29,8 @@ pub(crate) fn run(args: &CameraArgs) -> anyhow::Result<Outcome> {
     let options = CameraOptions { threads: results.job.common.threads(), ..given.options.clone() };
     jobs::run(
         &results.request("camera", "files", &given.said),
-        || Ok(camera::plan(inputs, &options, results.outputs().as_ref())?),
-        |watch| Ok(camera::run(inputs, &options, &needed(results.outputs())?, watch)?),
+        || Ok(camera::plan(inputs, &options, &results.outputs())?),
+        |watch| Ok(camera::run(inputs, &options, &results.outputs(), watch)?),
         |common, report| say(common, inputs, report),
     )
 }

@@ -4,7 +4,7 @@ use clap::Args;
 use lunula::job::Given;
 use lunula::layout::{self, LayoutInputs, LayoutOptions, LayoutReport, Method};
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Choose where photodiodes serve best, out of all places of which there are readings (5.5, 7.2)
@@ -27,8 +27,8 @@ pub(crate) fn run(args: &LayoutArgs) -> anyhow::Result<Outcome> {
     let LayoutArgs { given, inputs, results } = args;
     jobs::run(
         &results.request("layout", "numbers of photodiodes", &given.said),
-        || Ok(layout::plan(inputs, &given.options, results.outputs().as_ref())),
-        |watch| Ok(layout::run(inputs, &given.options, &needed(results.outputs())?, watch)?),
+        || Ok(layout::plan(inputs, &given.options, &results.outputs())),
+        |watch| Ok(layout::run(inputs, &given.options, &results.outputs(), watch)?),
         say,
     )
 }

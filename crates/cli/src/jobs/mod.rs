@@ -53,15 +53,24 @@ impl ResultArgs {
         Request { name, unit, job: &self.job, said, result: self.out.clone() }
     }
 
-    /// Where results go; none where it was not said.
-    pub(super) fn outputs(&self) -> Option<Outputs> {
-        Outputs::of(self.out.as_ref(), !self.no_figures)
+    /// Where results go; of a plan perhaps nowhere yet.
+    pub(super) fn place(&self) -> PathBuf {
+        self.out.clone().unwrap_or_default()
+    }
+
+    pub(super) fn outputs(&self) -> Outputs {
+        Outputs { figures: !self.no_figures, ..Outputs::all(self.place()) }
+    }
+
+    /// Of a job that only prints where no place for results was said.
+    pub(super) fn outputs_if_said(&self) -> Option<Outputs> {
+        self.out.as_ref().map(|_| self.outputs())
     }
 }
 
-/// The results of what is run, not only planned.
-pub(super) fn needed<T>(outputs: Option<T>) -> anyhow::Result<T> {
-    outputs.context("--out is needed: where the results go")
+/// The place of what is run, not only planned.
+pub(super) fn needed<T>(out: Option<T>) -> anyhow::Result<T> {
+    out.context("--out is needed: where the results go")
 }
 
 /// What a command asks of its job.

@@ -7,7 +7,7 @@ use clap::Args;
 use lunula::job::Given;
 use lunula::nailvideo::{self, Inputs, NailVideoOptions, NailVideoReport, Outputs, mask_of};
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Read virtual photodiodes off a video of a nail: follow the nail, average places of it, find presses
@@ -57,14 +57,14 @@ impl NailVideoArgs {
         Ok(Inputs { video: self.video.clone(), outline, positions: self.positions.clone() })
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        Some(Outputs {
-            folder: self.results.out.clone()?,
+    fn outputs(&self) -> Outputs {
+        Outputs {
+            folder: self.results.place(),
             frames: self.frames,
             figures: !self.results.no_figures,
             report: true,
             ending: if self.parquet { "parquet" } else { "csv" },
-        })
+        }
     }
 }
 
@@ -73,8 +73,8 @@ pub(crate) fn run(args: &NailVideoArgs) -> anyhow::Result<Outcome> {
     let options = NailVideoOptions { threads: results.job.common.threads(), ..given.options.clone() };
     jobs::run(
         &results.request("nailvideo", "frames", &given.said),
-        || Ok(nailvideo::plan(&args.inputs()?, &options, args.outputs().as_ref())?),
-        |watch| Ok(nailvideo::run(&args.inputs()?, &options, &needed(args.outputs())?, watch)?),
+        || Ok(nailvideo::plan(&args.inputs()?, &options, &args.outputs())?),
+        |watch| Ok(nailvideo::run(&args.inputs()?, &options, &args.outputs(), watch)?),
         say,
     )
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use lunula::job::Given;
 use lunula::posture::{self, Layout, Outputs, PostureOptions, PostureReport, suggest};
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome, print_line};
 
 /// Measure joint angles in a video of a finger with coloured markers, each frame with its time and standard error
@@ -55,14 +55,14 @@ impl PostureArgs {
         Ok(Layout::read(markers)?.wanting(&self.given.options.joints)?)
     }
 
-    fn outputs(&self) -> Option<Outputs> {
-        Some(Outputs {
-            joints: self.results.out.clone()?,
+    fn outputs(&self) -> Outputs {
+        Outputs {
+            joints: self.results.place(),
             tracks: self.tracks.clone(),
             overlay: self.overlay.clone(),
             figures: !self.results.no_figures,
             report: true,
-        })
+        }
     }
 }
 
@@ -76,8 +76,8 @@ pub(crate) fn run(args: &PostureArgs) -> anyhow::Result<Outcome> {
     let options = PostureOptions { threads: common.threads(), ..given.options.clone() };
     jobs::run(
         &results.request("posture", "frames", &given.said),
-        || Ok(posture::plan(video, &args.layout()?, &options, args.outputs().as_ref())?),
-        |watch| Ok(posture::run(video, &args.layout()?, &options, &needed(args.outputs())?, watch)?),
+        || Ok(posture::plan(video, &args.layout()?, &options, &args.outputs())?),
+        |watch| Ok(posture::run(video, &args.layout()?, &options, &args.outputs(), watch)?),
         say,
     )
 }

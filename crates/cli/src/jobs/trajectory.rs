@@ -6,7 +6,7 @@ use lunula::predictor::trajectory::{
     self, BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryReport,
 };
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Write calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly
@@ -53,8 +53,8 @@ pub(crate) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
 fn write<K: KindOptions>(KindArgs { given, results }: &KindArgs<K>) -> anyhow::Result<Outcome> {
     jobs::run(
         &results.request("trajectory", "steps", &given.said),
-        || Ok(trajectory::plan(&given.options.options(), results.outputs().as_ref())?),
-        |watch| Ok(trajectory::run(&given.options.options(), &needed(results.outputs())?, watch)?),
+        || Ok(trajectory::plan(&given.options.options(), &results.outputs())?),
+        |watch| Ok(trajectory::run(&given.options.options(), &results.outputs(), watch)?),
         say,
     )
 }

@@ -7,7 +7,7 @@ use lunula::hemodynamics::{FitInputs, FitOptions, FitReport, fit, fit_plan};
 use lunula::job::Given;
 use lunula::words::fixed;
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 const EXAMPLES: &str = "Examples:
@@ -76,8 +76,8 @@ pub(crate) fn run(args: &FitArgs) -> anyhow::Result<Outcome> {
     };
     jobs::run(
         &results.request("fit", "steps", &given.said),
-        || Ok(fit_plan(&inputs, &given.options, results.outputs().as_ref())?),
-        |watch| Ok(fit(&inputs, &given.options, &needed(results.outputs())?, watch)?),
+        || Ok(fit_plan(&inputs, &given.options, &results.outputs())?),
+        |watch| Ok(fit(&inputs, &given.options, &results.outputs(), watch)?),
         say,
     )
 }

@@ -9,7 +9,7 @@ use lunula::hemodynamics::{
 };
 use lunula::job::Given;
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome, print_line};
 
 const EXAMPLES: &str = "Examples:
@@ -116,14 +116,14 @@ pub(crate) fn run(args: &SimulateArgs) -> anyhow::Result<Outcome> {
     match &args.way {
         Way::OverTime(given) => jobs::run(
             &results.request("simulate", "steps", &given.said),
-            || Ok(simulate_plan(inputs, &given.options, results.outputs().as_ref())?),
-            |watch| Ok(simulate(inputs, &given.options, &needed(results.outputs())?, watch)?),
+            || Ok(simulate_plan(inputs, &given.options, &results.outputs())?),
+            |watch| Ok(simulate(inputs, &given.options, &results.outputs(), watch)?),
             say_over_time,
         ),
         Way::Static(given) => jobs::run(
             &results.request("simulate --static", "steps", &given.said),
-            || Ok(curve_plan(inputs.params.as_deref(), &given.options, results.outputs().as_ref())?),
-            |watch| Ok(curve(inputs.params.as_deref(), &given.options, &needed(results.outputs())?, watch)?),
+            || Ok(curve_plan(inputs.params.as_deref(), &given.options, &results.outputs())?),
+            |watch| Ok(curve(inputs.params.as_deref(), &given.options, &results.outputs(), watch)?),
             say_static,
         ),
     }

@@ -8,7 +8,7 @@ use lunula::live::performance::{
     self, Comparison, MethodFigures, PerformanceOptions, PerformanceReport, Statement, TrialMean,
 };
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 const EXAMPLES: &str = "Examples:
@@ -45,8 +45,8 @@ pub(crate) fn run(PerformanceArgs { trials, given, results }: &PerformanceArgs) 
     let (name, options) = (trials.display().to_string(), &given.options);
     jobs::run(
         &results.request("performance", "steps", &given.said),
-        || Ok(performance::plan(results.outputs().as_ref())),
-        |watch| Ok(performance::run(trials, &name, options, &needed(results.outputs())?, watch)?),
+        || Ok(performance::plan(&results.outputs())),
+        |watch| Ok(performance::run(trials, &name, options, &results.outputs(), watch)?),
         say,
     )
 }

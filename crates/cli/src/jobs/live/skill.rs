@@ -8,7 +8,7 @@ use lunula::job::Given;
 use lunula::live::skill::{self, FingerSpread, SkillInputs, SkillOptions, SkillReport};
 use lunula::predictor::DataFile;
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 const EXAMPLES: &str = "Examples:
@@ -69,9 +69,9 @@ pub(crate) fn run(args: &SkillArgs) -> anyhow::Result<Outcome> {
         &results.request("skill", "recordings", &given.said),
         || {
             let SkillInputs { recordings, reference } = args.inputs()?;
-            Ok(skill::plan(recordings.len(), reference.is_some(), &given.options, results.outputs().as_ref())?)
+            Ok(skill::plan(recordings.len(), reference.is_some(), &given.options, &results.outputs())?)
         },
-        |watch| Ok(skill::run(&args.inputs()?, &given.options, &needed(results.outputs())?, watch)?),
+        |watch| Ok(skill::run(&args.inputs()?, &given.options, &results.outputs(), watch)?),
         say,
     )
 }

@@ -9,7 +9,7 @@ use lunula::live::{
     tune_switch,
 };
 
-use crate::jobs::{self, ResultArgs, needed};
+use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
 /// Choose and judge the thresholds of the virtual switch (6.1), for `lunula live --switch`
@@ -68,8 +68,8 @@ pub(crate) fn run(args: &SwitchArgs) -> anyhow::Result<Outcome> {
 fn tune(TuneArgs { inputs, given, results }: &TuneArgs) -> anyhow::Result<Outcome> {
     jobs::run(
         &results.request("switch tune", "recordings", &given.said),
-        || Ok(tune_plan(inputs.recordings.len(), results.outputs().as_ref())),
-        |watch| Ok(tune_switch(inputs, &given.options, &needed(results.outputs())?, watch)?),
+        || Ok(tune_plan(inputs.recordings.len(), &results.outputs())),
+        |watch| Ok(tune_switch(inputs, &given.options, &results.outputs(), watch)?),
         say_tuned,
     )
 }
@@ -77,8 +77,8 @@ fn tune(TuneArgs { inputs, given, results }: &TuneArgs) -> anyhow::Result<Outcom
 fn evaluate(EvaluateArgs { switch, inputs, given, results }: &EvaluateArgs) -> anyhow::Result<Outcome> {
     jobs::run(
         &results.request("switch evaluate", "recordings", &given.said),
-        || Ok(evaluate_plan(inputs.recordings.len(), results.outputs().as_ref())),
-        |watch| Ok(evaluate_switch(switch, inputs, &given.options, &needed(results.outputs())?, watch)?),
+        || Ok(evaluate_plan(inputs.recordings.len(), &results.outputs())),
+        |watch| Ok(evaluate_switch(switch, inputs, &given.options, &results.outputs(), watch)?),
         |common, report| say_evaluation(common, "on these recordings", &report.all),
     )
 }

@@ -33,8 +33,8 @@ pub(crate) struct AnalyseArgs {
 pub(crate) fn run(AnalyseArgs { model, given, results }: &AnalyseArgs) -> anyhow::Result<Outcome> {
     jobs::run(
         &results.request("analyse", "steps", &given.said),
-        || Ok(analyse_plan(results.outputs().as_ref())),
-        |watch| Ok(analyse(model, results.outputs().as_ref(), watch)?),
+        || Ok(analyse_plan(results.outputs_if_said().as_ref())),
+        |watch| Ok(analyse(model, results.outputs_if_said().as_ref(), watch)?),
         say,
     )
 }

@@ -39,7 +39,7 @@ pub(crate) struct EvaluateArgs {
 
 pub(crate) fn run(args: &EvaluateArgs) -> anyhow::Result<Outcome> {
     let (data, options) = (DataFile::of(&args.data), args.given.options.options());
-    let outputs = args.results.outputs();
+    let outputs = args.results.outputs_if_said();
     jobs::run(
         &args.results.request("evaluate", "steps", &args.given.said),
         || {

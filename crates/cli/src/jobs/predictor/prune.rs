@@ -36,7 +36,7 @@ pub(crate) struct PruneArgs {
 
 pub(crate) fn run(args: &PruneArgs) -> anyhow::Result<Outcome> {
     let PruneArgs { data, validate, given, results } = args;
-    let outputs = results.outputs();
+    let outputs = results.outputs_if_said();
     jobs::run(
         &results.request("prune", "steps", &given.said),
         || {
