@@ -1,6 +1,6 @@
 //! A job, or all of them, measured and judged: the one entry of command line and pipelines.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use super::choices::Job;
@@ -9,37 +9,10 @@ use super::peers::{PeerRow, read_peers};
 use super::predictor::switch;
 use super::{align, hemodynamics, photos, posture, predictor};
 use crate::job::Interrupted;
-use crate::phantom::video::Preset;
+use crate::tradeoff::measure::plan::Plan;
 use crate::tradeoff::measure::scenes;
-use crate::tradeoff::measure::timing::Effort;
-
-/// On what and how is measured.
-#[derive(Debug, Clone)]
-pub struct Plan {
-    /// Seed of the synthetic scenes.
-    pub seed: u64,
-    /// A folder to measure on, with its truth, as `lunula phantom` writes them; none: synthetic scenes.
-    pub input: Option<(PathBuf, PathBuf)>,
-    /// Subjects of the synthetic photographs, in four poses.
-    pub subjects: u32,
-    /// The synthetic video of a finger.
-    pub preset: Preset,
-    /// Length of the synthetic video and log that are aligned, seconds.
-    pub seconds: f64,
-    /// How much.
-    pub effort: Effort,
-    /// Tables of other programs' figures.
-    pub peers: Vec<PathBuf>,
-}
 
 impl Plan {
-    /// Synthetic scenes of `seed`; in a hurry small ones.
-    #[must_use]
-    pub fn new(seed: u64, effort: Effort, peers: Vec<PathBuf>) -> Self {
-        let (subjects, seconds) = if effort.quick { (4, 20.0) } else { (16, 60.0) };
-        Self { seed, input: None, subjects, preset: Preset::Clean, seconds, effort, peers }
-    }
-
     /// The rows of all tables.
     ///
     /// # Errors

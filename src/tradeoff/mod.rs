@@ -20,10 +20,11 @@ pub mod photos;
 pub mod posture;
 pub mod predictor;
 
-pub use all::{Outcomes, Plan, all};
+pub use all::{Outcomes, all};
 pub use choices::{Choice, Job, choices};
 pub use judge::knee::{BEND, Cost, Knee, SAME, Why, front, knee};
 pub use judge::{Figures, Tradeoff, Verdict, judge};
+pub use measure::plan::Plan;
 pub use measure::rows::{Measured, Row};
 pub use measure::timing::{Effort, Timing};
 pub use page::{Setting, index};

@@ -10,7 +10,7 @@ use crate::phantom::photos::{PhotoOptions, write};
 use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{self, Scene, VideoOptions};
-use crate::tradeoff::all::Plan;
+use crate::tradeoff::measure::plan::Plan;
 use crate::tradeoff::predictor::switch;
 use crate::tradeoff::{align, photos, posture, predictor};
 
