@@ -514,6 +514,22 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
         dir.write(name, altered(30.0, "time_s,P1,Fz_N", of));
         judge(&dir, name, &[]).expect(0).says(words);
     }
+    // A threshold of contact within the force's noise, and a device that says for a while that nothing is touched.
+    write("noise.csv", &|t_s, light, force| {
+        let noise = 0.2 * (((100.0 * t_s).round() * 7.3).sin()).round();
+        format!("{t_s},{light},{}\n", force + noise)
+    });
+    judge(&dir, "noise.csv", &[]).expect(0).says("contacts last a row or two, which no finger does");
+    dir.write(
+        "middle.csv",
+        altered(60.0, "time_s,P1,Fz_N", |t_s, light, force| {
+            format!("{t_s},{light},{}\n", if (20.0..40.0).contains(&t_s) { 0.0 } else { force })
+        }),
+    );
+    judge(&dir, "middle.csv", &[])
+        .expect(0)
+        .says("middle.csv: there is no contact from ")
+        .says("and the finger presses");
     // Rows that the model can't answer.
     dir.write("lit.csv", altered(20.0, "time_s,led,P1,Fz_N", |t_s, light, force| format!("{t_s},1,{light},{force}\n")));
     judge(&dir, "lit.csv", &[]).expect(2).says("lit.csv: none of its 2000 rows has a prediction");

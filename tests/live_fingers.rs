@@ -61,6 +61,9 @@ fn forces_of_a_second_device_are_recorded_at_the_times_of_samples() {
     let [p, f] = at("20");
     dir.lunula(&["record", "--source", &p, "--force", &f, "--out", "k.csv", "-q"]).expect(0);
     assert_eq!(dir.text("k.csv"), text);
+    dir.lunula(&["record", "--source", "f.csv", "--force", "p.csv", "--out", "x.csv"])
+        .expect(2)
+        .says("column `P1` of --force is a sensor's: were --source and --force exchanged?");
     // It is what `train` reads.
     dir.train("j.csv", "Fz_N", "j.json", &["-q"]).expect(0);
 }

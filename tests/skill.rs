@@ -318,6 +318,21 @@ fn a_column_of_subjects_is_believed_and_another_name_is_warned_of() {
 }
 
 #[test]
+fn presses_that_run_together_as_the_zero_moves_are_named() {
+    let dir = Dir::new();
+    let presses: Vec<Press> = (0..30).map(|k| press(1.0 + f64::from(k), 0.3, 2.0)).collect();
+    let moved = |by_n: f64| {
+        let mut rows = rows(0.0, 32.0, &[&presses]);
+        rows.iter_mut().filter(|row| row[0] >= 16.0).for_each(|row| row[1] -= by_n);
+        csv("time_s,Fz_N", &rows)
+    };
+    dir.write("moved.csv", moved(0.3));
+    run(&dir, "moved.csv --out o").expect(0).says("finger: from 16.0 to ").says("did the transducer's zero move?");
+    dir.write("still.csv", moved(0.0));
+    run(&dir, "still.csv --out p").expect(0).never_says("zero move");
+}
+
+#[test]
 fn noise_near_the_threshold_is_no_contact() {
     let dir = Dir::new();
     let presses: Vec<Press> = (0..6).map(|k| press(1.0 + f64::from(k), 0.3, 2.0)).collect();

@@ -121,7 +121,7 @@ pub fn curve(
     if range.loads.from_pa < 0.0 {
         report.notes.push(format!("--static: loads begin at {} Pa: {SUCTION}", range.loads.from_pa));
     }
-    report.warnings.extend(hardly_pressed("--static", &[&loads_pa]).into_iter().chain(hardly_flows(blood_pa)));
+    report.warnings.extend(hardly_pressed(&[("--static", &loads_pa)]).into_iter().chain(hardly_flows(blood_pa)));
     if nothing_open {
         report.warnings.push("no load has an equilibrium with open vessels: nothing is drawn".to_owned());
     }

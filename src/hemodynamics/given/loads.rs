@@ -12,15 +12,27 @@ use crate::log::{LogReading, doubts};
 /// Pressures that are nowhere greater hardly press on vessels of kilopascals, and are in another unit (assumed).
 const HARDLY_PA: f64 = 200.0;
 
-/// What to say of pressures `of` something, Pa, that are all but nothing.
-pub(in crate::hemodynamics) fn hardly_pressed(of: &str, columns: &[&[f64]]) -> Option<String> {
-    let largest = columns.concat().into_iter().map(f64::abs).filter(|pa| pa.is_finite()).fold(0.0, f64::max);
-    (largest > 0.0 && largest < HARDLY_PA).then(|| {
-        format!(
+/// Of two pressures, one that is so many times less than the other is in another unit (assumed: mmHg are 133 Pa).
+const APART: f64 = 100.0;
+
+/// What to say of pressures, Pa, known by name, that are all but nothing: of all, or of one beside another.
+pub(in crate::hemodynamics) fn hardly_pressed(columns: &[(&str, &[f64])]) -> Option<String> {
+    let most = |values: &[f64]| values.iter().map(|pa| pa.abs()).filter(|pa| pa.is_finite()).fold(0.0, f64::max);
+    let each: Vec<(&str, f64)> = columns.iter().map(|(name, values)| (*name, most(values))).collect();
+    let largest = each.iter().map(|(_, most)| *most).fold(0.0, f64::max);
+    if largest > 0.0 && largest < HARDLY_PA {
+        let of = each.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" and ");
+        return Some(format!(
             "no pressure of {of} is greater than {largest} Pa, which hardly presses on a vessel: are they in kPa or \
              mmHg? Write them in Pa"
-        )
-    })
+        ));
+    }
+    let is_other = |most: f64| most > 0.0 && most < HARDLY_PA && largest > APART * most;
+    let (name, most) = each.iter().find(|(_, most)| is_other(*most))?;
+    Some(format!(
+        "no pressure of {name} is greater than {most} Pa, and the other reaches {largest} Pa: is {name} in kPa or \
+         mmHg? Write it in Pa"
+    ))
 }
 
 /// What to know of a negative load.
@@ -83,13 +95,13 @@ impl LoadOptions {
             let needed = [TIME, PRESSED[0], PRESSED[1]];
             let columns = rows.numbers(&needed, &BLOOD, TIME)?;
             let placed = |what: &[String]| what.iter().map(|one| format!("{}: {one}", path.display())).collect();
-            let pressed: Vec<&[f64]> = PRESSED.iter().filter_map(|name| columns.get(name)).collect();
+            let pressed: Vec<(&str, &[f64])> =
+                PRESSED.iter().filter_map(|name| Some((*name, columns.get(name)?))).collect();
             let times_s = columns.get(TIME).unwrap_or_default();
             // Of a table that a person wrote the rows are as far apart as they please.
             let logged = doubts::even_step(times_s).filter(|_| !rows.is_log());
             let time = logged.and_then(|_| doubts::time(times_s).or_else(|| doubts::gap(times_s)));
-            let doubted: Vec<String> =
-                hardly_pressed(&PRESSED.join(" and "), &pressed).into_iter().chain(time).collect();
+            let doubted: Vec<String> = hardly_pressed(&pressed).into_iter().chain(time).collect();
             warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed), &doubted].concat());
             notes = placed(&rows.notes());
             known_s = place_columns(&rows, &columns, &mut loads)?;
@@ -97,7 +109,7 @@ impl LoadOptions {
         let loads = loads.with_blood(&self.blood.ph, &self.blood.pl);
         if file.is_none() {
             let given = [("--pf1", &self.pf1), ("--pf2", &self.pf2)];
-            warnings.extend(given.iter().filter_map(|(of, load)| hardly_pressed(of, &[&values(load.as_ref()?)])));
+            warnings.extend(given.iter().filter_map(|(of, load)| hardly_pressed(&[(*of, &values(load.as_ref()?))])));
         }
         let greatest = |load: &Load| values(load).into_iter().fold(f64::NEG_INFINITY, f64::max);
         warnings.extend(hardly_flows([&loads.upstream, &loads.downstream].map(greatest)));

@@ -148,6 +148,25 @@ pub fn simulate(
     Ok(report.timed(&stages, begin).commit(places, report_at.as_deref())?)
 }
 
+/// Fewer rows a period don't show what repeats.
+const ROWS_A_PERIOD: f64 = 5.0;
+
+/// What to say of a load that rows so far apart don't show.
+fn too_few_rows(of: &str, load: &Load, every_s: f64) -> Option<String> {
+    if let Some(hz) = load.frequency_hz().map(f64::abs).filter(|hz| hz * every_s * ROWS_A_PERIOD > 1.0) {
+        return Some(format!(
+            "{of}: repeats every {:.4} s, and rows are {every_s} s apart, too few to show it; choose a smaller --every",
+            hz.recip()
+        ));
+    }
+    let [.., before_s, after_s] = *load.breakpoints() else { return None };
+    let is_between = (before_s / every_s).ceil() * every_s >= after_s;
+    let comes_back = load.before(before_s) == load.at(after_s) && load.at(before_s) != load.at(after_s);
+    (is_between && comes_back).then(|| {
+        format!("{of}: begins and ends between two rows, which are {every_s} s apart; choose a smaller --every")
+    })
+}
+
 /// What a person has to know of the loads, and what was chosen.
 fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &SimulateOptions, loads: &ReadLoads) {
     report.warnings.clone_from(&loads.warnings);
@@ -165,6 +184,7 @@ fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &Simul
     }
     for (option, load) in [("--pf1", pf1), ("--pf2", pf2), ("--ph", &blood.ph), ("--pl", &blood.pl)] {
         let Some(load) = load else { continue };
+        report.warnings.extend(too_few_rows(&format!("{option} {load}"), load, options.every_s));
         if let (Some(&first), Some(&last)) = (load.breakpoints().first(), load.breakpoints().last()) {
             report.warnings.extend(constant(&format!("{option} {load}"), [first, last], until_s));
         }

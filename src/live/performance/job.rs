@@ -129,7 +129,7 @@ fn warnings(trials: &Trials, course: &Course) -> Vec<String> {
     let operators = copied(&trials.operators, trials, |row| (row.operator, row.method));
     let methods = copied(&trials.methods, trials, |row| (row.method, row.operator));
     let slips = unlike(trials).into_iter().chain(stopped(trials)).chain(cumulative(trials, course));
-    let slips = slips.chain(counted_on(trials));
+    let slips = slips.chain(counted_on(trials)).chain(kept(trials));
     named.chain(long).chain(little).chain(slips).chain(operators).chain(methods).collect()
 }
 
@@ -187,6 +187,27 @@ fn stopped(trials: &Trials) -> Option<String> {
              time; leave their time empty",
             greatest.len(),
             greatest[0]
+        )
+    })
+}
+
+/// So many trials in a row of one time are no chance where times have decimals (600 generated tables: 4 in one of them;
+/// of whole seconds 6).
+const KEPT: usize = 5;
+
+/// Trials of an operator that took exactly what the one before took.
+fn kept(trials: &Trials) -> Option<String> {
+    let whole = trials.rows.iter().filter(|row| row.time_s.fract() == 0.0).count();
+    let mut rows: Vec<&Row> = trials.rows.iter().collect();
+    rows.sort_by_key(|row| (row.operator, row.method, row.trial));
+    let same = |a: &&Row, b: &&Row| (a.operator, a.method) == (b.operator, b.method) && a.time_s == b.time_s;
+    let longest = rows.chunk_by(same).max_by_key(|run| run.len())?;
+    let (first, last) = (longest.first()?, longest.last()?);
+    (longest.len() >= KEPT && 2 * whole < trials.rows.len()).then(|| {
+        format!(
+            "trials {} to {} of {} with {} took exactly {} s each: was the last time carried forward? Leave a time \
+             empty that is not known",
+            first.trial, last.trial, trials.operators[first.operator], trials.methods[first.method], first.time_s
         )
     })
 }

@@ -144,7 +144,7 @@ impl Recognizer {
 }
 
 /// Whether a name is a photodiode's: `P1`, `VP1`.
-fn is_photodiode(name: &str) -> bool {
+pub(super) fn is_photodiode(name: &str) -> bool {
     let number = name.strip_prefix("VP").or_else(|| name.strip_prefix('P'));
     number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use lunula_live::skill::{Contact, Force};
 use rayon::prelude::*;
 
 use super::analysis::{self, Reference};
@@ -158,9 +159,10 @@ fn analysed(
     warnings.extend(read.warnings.iter().cloned().chain(time).map(|doubt| format!("{name}: {doubt}")));
     for trial in &read.trials {
         let (figures, touched) = analysis::figures(name, trial, reference, options);
-        for finger in &trial.fingers {
+        for (finger, touched) in trial.fingers.iter().zip(&touched) {
             let noisy = noisy(&finger.force.force_n, options.touch_n);
-            let doubts = finger.doubts.iter().chain(&noisy);
+            let merged = merged(&finger.force, touched);
+            let doubts = finger.doubts.iter().chain(&noisy).chain(&merged);
             warnings.extend(doubts.map(|doubt| format!("{name}: trial {}: {}: {doubt}", trial.trial, finger.name)));
         }
         if draw && drawn.len() < MOST_DRAWN {
@@ -195,6 +197,42 @@ fn noisy(force_n: &[f64], touch_n: f64) -> Option<String> {
         format!(
             "the force scatters at rest by {sd_n:.2} N (SD) or more, and --touch is {touch_n} N: contacts are made of \
              noise, and broken by it; choose a higher --touch and --release, or filter the force"
+        )
+    })
+}
+
+/// Presses run together in a contact that lasts so many times as long as the usual one, of so many, in which the force
+/// falls below the first of these shares of its peak and rises above the second again so often (generated presses: 9
+/// times as long and one rise at most; with a transducer that drifts 18 and 25 times, 4 and 6 rises).
+const LONG: f64 = 10.0;
+const CONTACTS: usize = 3;
+const FALLS: f64 = 0.35;
+const RISES: f64 = 0.6;
+const AGAIN: usize = 4;
+
+/// That presses have become one contact, as where a transducer's zero has moved.
+fn merged(force: &Force, contacts: &[Contact]) -> Option<String> {
+    let length_s = |contact: &Contact| contact.to_s - contact.from_s;
+    let usual_s = median_of(contacts.iter().map(length_s)).filter(|_| contacts.len() >= CONTACTS)?;
+    let rises = |contact: &Contact| {
+        let force_n = &force.force_n[contact.rows.clone()];
+        let peak_n = force_n.iter().copied().fold(0.0, f64::max);
+        let (mut is_low, mut rises) = (false, 0);
+        for force_n in force_n {
+            is_low |= *force_n < FALLS * peak_n;
+            if is_low && *force_n > RISES * peak_n {
+                (is_low, rises) = (false, rises + 1);
+            }
+        }
+        rises
+    };
+    let long = contacts.iter().filter(|contact| length_s(contact) >= LONG * usual_s);
+    let (contact, rises) = long.map(|contact| (contact, rises(contact))).max_by_key(|(_, rises)| *rises)?;
+    (rises >= AGAIN).then(|| {
+        format!(
+            "from {:.1} to {:.1} s it is one contact, {usual_s:.1} s in the median, in which the force falls and rises \
+             {rises} times: did the transducer's zero move? Zero it again, or choose a higher --touch and --release",
+            contact.from_s, contact.to_s
         )
     })
 }

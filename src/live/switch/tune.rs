@@ -7,7 +7,7 @@
 use std::iter;
 use std::time::Instant;
 
-use lunula_live::switch::{Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
+use lunula_live::switch::{Evaluation, Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
 
 use super::doubts::elsewhere;
 use super::figures::{WIDTH, curve_chart};
@@ -49,6 +49,8 @@ pub fn tune_switch(
         watchdog_s: options.watchdog,
         outside: options.outside.into(),
     };
+    let of_goal = SwitchConfig { watchdog_s: goal.watchdog_s, ..SwitchConfig::of(1.0, 0.0) };
+    of_goal.check().map_err(|why| LiveError::Request(why.to_string()))?;
     let tuned = stages.time("choose", || tune(&traces, &goal)).map_err(|why| {
         // What is doubtful about the recordings may be why.
         LiveError::Request(iter::once(why.to_string()).chain(warnings.clone()).collect::<Vec<_>>().join("; "))
@@ -139,6 +141,15 @@ fn weak(report: &TuneReport, options: &TuneOptions) -> Vec<String> {
         warnings.push(format!(
             "{} false switches in {:.2} h agree with up to {:.1} an hour, and {goal} are allowed: {more}",
             judged.false_switches, judged.hours, rate.false_per_hour_high
+        ));
+    }
+    let Evaluation { missed, presses, .. } = *judged;
+    let share = options.missed;
+    if judged.misses_more_than(share) {
+        warnings.push(format!(
+            "the goal is missed on recordings that are held out: {missed} of {presses} presses are missed, and {:.1} % \
+             are allowed; name more recordings with presses, or choose with a higher --missed",
+            100.0 * share
         ));
     }
     warnings

@@ -58,6 +58,11 @@ pub struct SwitchConfig {
     pub places: Vec<Place>,
 }
 
+/// Nobody holds a finger for so long to be understood, nor waits for so long, seconds (assumed): longer ones are
+/// milliseconds.
+const LONGEST_HOLD_S: f64 = 10.0;
+const LONGEST_S: f64 = 60.0;
+
 /// A picture of a switch in the tracker's plane, metres: a rectangle or a disc.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -118,14 +123,14 @@ impl SwitchConfig {
             faults.push(format!("on_N = {on_n}: choose more than 0 N, as a finger that does not touch presses with 0"));
         }
         let times = [
-            ("hold_on_s", self.hold_on_s),
-            ("hold_off_s", self.hold_off_s),
-            ("lockout_s", self.lockout_s),
-            ("watchdog_s", self.watchdog_s),
+            ("hold_on_s", self.hold_on_s, LONGEST_HOLD_S),
+            ("hold_off_s", self.hold_off_s, LONGEST_HOLD_S),
+            ("lockout_s", self.lockout_s, LONGEST_S),
+            ("watchdog_s", self.watchdog_s, LONGEST_S),
         ];
-        for (key, value) in times {
-            if !(0.0..=3600.0).contains(&value) {
-                faults.push(format!("{key} = {value}: choose 0 to 3600 s"));
+        for (key, value, most) in times {
+            if !(0.0..=most).contains(&value) {
+                faults.push(format!("{key} = {value}: choose 0 to {most} s"));
             }
         }
         for place in &self.places {

@@ -9,6 +9,7 @@
 //! by chance ([`rate_of`]).
 
 use serde::Serialize;
+use statrs::function::beta::beta_reg;
 
 use super::config::SwitchConfig;
 use super::contact::{Contact, Contacts};
@@ -79,6 +80,16 @@ pub struct Evaluation {
     pub delay_off_s: Option<Quartiles>,
     /// Releases by the watchdog, by a clock set back or a lost source.
     pub let_go: u64,
+}
+
+impl Evaluation {
+    /// Whether surely more than this share of presses is missed: so many, or more, come of it by chance in less than
+    /// 2.5 % of cases.
+    #[must_use]
+    pub fn misses_more_than(&self, share: f64) -> bool {
+        let (missed, presses) = (self.missed as f64, self.presses as f64);
+        (1..=self.presses).contains(&self.missed) && beta_reg(missed, presses - missed + 1.0, share) < 0.025
+    }
 }
 
 /// False switches an hour.

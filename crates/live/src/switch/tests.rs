@@ -296,6 +296,10 @@ fn false_switches_misses_and_delays_are_counted() {
     assert!(rate.false_per_hour == 0.0 && (rate.false_per_hour_high - 2.9957 * 36.0).abs() <= 0.2, "{rate:?}");
     let none = Evaluation::of(&SwitchConfig::of(2.0, 1.0), std::slice::from_ref(&trace));
     assert_eq!((none.decisions, none.missed, none.delay_on_s), (0, 20, None));
+    assert!(none.misses_more_than(0.5) && !none.misses_more_than(1.0) && !all.misses_more_than(0.0));
+    // Three of 20 are no more than 0.15 by chance; by a thousandth they are not.
+    let some = Evaluation { missed: 3, ..all.clone() };
+    assert!(!some.misses_more_than(0.05) && some.misses_more_than(0.01), "0.0755 and 0.0010 by R's pbinom");
     // In the noise it presses again and again.
     let noisy = Evaluation::of(&SwitchConfig::of(0.06, 0.05), std::slice::from_ref(&trace));
     assert!(noisy.false_switches > 200 && noisy.missed == 0, "{noisy:?}");
@@ -384,6 +388,10 @@ fn a_file_is_read_checked_and_written_back() {
     );
     assert_eq!(SwitchConfig::from_toml(&toml::to_string(&config).unwrap()).unwrap(), config);
     assert_eq!([(0.05, 0.1), (0.3, 0.12), (0.2, 0.2)].map(|(x, y)| config.at(x, y)), [Some("x+"), Some("x-"), None]);
+    for (slow, most) in [("hold_on_s = 40", 10), ("lockout_s = 300", 60), ("watchdog_s = 500", 60)] {
+        let fault = SwitchConfig::from_toml(&format!("on_N = 0.5\noff_N = 0.3\n{slow}\n")).unwrap_err().to_string();
+        assert!(fault.contains(&format!("{slow}: choose 0 to {most} s")), "{fault}");
+    }
     let bad = "on_N = -1\noff_N = 2\nhold_on_s = -3\nwatchdog_s = nan\n[[place]]\nname = \"p\"\n";
     let fault = SwitchConfig::from_toml(bad).unwrap_err();
     assert_eq!(fault.0.len(), 5, "{fault}");

@@ -198,9 +198,15 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     match read.get(TIME) {
         Some(times_s) => {
             warnings.extend(rows.near_misses(&BLOOD, &used));
-            let loads = needed.iter().filter(|name| **name != TIME && columns.between == Between::Straight);
-            let held = |name: &&str| doubts::held(name, times_s, read.get(name).unwrap_or_default());
-            warnings.extend(loads.filter_map(held));
+            let loads = needed.iter().filter(|name| **name != TIME);
+            let doubt = |name: &&str| {
+                let values = read.get(name).unwrap_or_default();
+                match columns.between {
+                    Between::Straight => doubts::held(name, times_s, values),
+                    Between::Held => signs::moves(name, values),
+                }
+            };
+            warnings.extend(loads.filter_map(doubt));
         }
         None => {
             let mut loads = needed.iter().filter_map(|name| read.get(name));

@@ -38,12 +38,26 @@ pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String
     cut.into_iter().chain(said).chain(rests).collect()
 }
 
+/// A load that changes in more than this share of rows does not step (steps: 0.05 at most; pulses: all).
+const MOVES: f64 = 0.5;
+
+/// What to say of a load that changes from row to row, and is taken to step.
+pub(super) fn moves(name: &str, values: &[f64]) -> Option<String> {
+    let changes = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    (changes as f64 > MOVES * values.len() as f64).then(|| {
+        format!(
+            "{name} changes in {changes} of {} rows, and --between held takes it to stay from row to row: it comes \
+             late by half a row, and the damping found is too small. Leave --between out where it moves between rows",
+            values.len()
+        )
+    })
+}
+
 /// What to say of pressures, Pa.
 pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
     let ranges = columns.map(|(_, pressures_pa)| without_spikes(pressures_pa));
     let largest = ranges.as_flattened().iter().fold(0.0, |largest: f64, pa| largest.max(pa.abs()));
-    let hardly =
-        hardly_pressed(&columns.map(|(name, _)| name).join(" and "), &columns.map(|(_, pressures_pa)| pressures_pa));
+    let hardly = hardly_pressed(&columns);
     let one = |((name, pressures_pa), [least, greatest]): ((&str, &[f64]), [f64; 2])| {
         let sucked = pressures_pa.iter().filter(|pa| **pa < 0.0).count();
         let pressed = pressures_pa.iter().filter(|pa| **pa > 0.0).count();
@@ -88,6 +102,16 @@ mod tests {
     /// Presses for a third of the time.
     fn presses(high: f64, count: usize) -> Vec<f64> {
         (0..count).map(|k| if k % 30 < 10 { high } else { 0.0 }).collect()
+    }
+
+    #[test]
+    fn a_load_that_moves_from_row_to_row_does_not_step() {
+        let pulse: Vec<f64> = (0..300).map(|k| 3000.0 + 1000.0 * (0.1 * f64::from(k)).sin()).collect();
+        assert!(moves("pf1_Pa", &pulse).is_some_and(|said| said.starts_with("pf1_Pa changes in 299 of 300 rows")));
+        assert_eq!(
+            [&presses(3000.0, 300), &vec![3000.0; 300], &Vec::new()].map(|load| moves("pf1_Pa", load)),
+            [(); 3].map(|()| None)
+        );
     }
 
     #[test]

@@ -12,7 +12,7 @@ use lunula_predictor::FORCES;
 
 use super::recording::Recording;
 use crate::live::error::LiveError;
-use crate::live::session::columns::StreamColumns;
+use crate::live::session::columns::{StreamColumns, is_photodiode};
 use crate::log::doubts;
 use crate::table::push_number;
 
@@ -134,10 +134,16 @@ impl Samples {
     /// The second device gives these columns.
     ///
     /// # Errors
-    /// A column that the sensor gives itself, in words.
+    /// A column that the sensor gives itself, or that no transducer has, in words.
     pub(crate) fn join(&mut self, names: &[String]) -> Result<(), String> {
         if let Some(twice) = names.iter().find(|name| self.names.contains(name)) {
             return Err(format!("column `{twice}` comes from the sensor too; leave out --force, or rename one"));
+        }
+        if let Some(name) = names.iter().find(|name| is_photodiode(name) || *name == "led") {
+            return Err(format!(
+                "column `{name}` of --force is a sensor's: were --source and --force exchanged? What --force gives is \
+                 interpolated, over lit and unlit rows alike"
+            ));
         }
         self.name(names);
         self.heard.look(names);
