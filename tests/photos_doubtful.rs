@@ -186,9 +186,29 @@ fn a_region_as_large_as_a_finger_is_doubted() {
         used == 2 && reasons.len() == 1 && reasons[0].contains("times as long as the mask's others"),
         "{reasons:?}"
     );
+    // Of two regions nobody knows which is the nail: a slip of the brush is the smaller one.
+    let slip = GrayImage::from_fn(160, 140, |x, y| {
+        let dab = (10..20).contains(&x) && (60..72).contains(&y);
+        Luma([if dab || (60..100).contains(&x) && (30..110).contains(&y) { 255 } else { 0 }])
+    });
+    slip.save(dir.place("masks/a.png")).expect("a mask");
+    dir.lunula(&run).expect(2).says("one of them is none, and it isn't known which");
     let inverted = GrayImage::from_fn(160, 140, |x, y| Luma([255 - painted_hand(0).get_pixel(x, y).0[0]]));
     inverted.save(dir.place("masks/a.png")).expect("a mask");
     dir.lunula(&run).expect(2).says("is the mask inverted");
+}
+
+#[test]
+fn a_photograph_without_a_mask_is_named_where_masks_are_given() {
+    let dir = finger_beside_nails();
+    let run = ["photos", "set", "--out", "out", "--masks", "masks", "--distal", "up"];
+    dir.lunula(&run).expect(0).never_says("have no mask");
+    drawn_nail().save(dir.place("set/b.png")).expect("a picture");
+    std::fs::copy(dir.path("masks/a.png"), dir.path("masks/b_mask.png")).expect("a copy");
+    dir.lunula(&run)
+        .expect(1)
+        .says("1 of 2 photographs have no mask in masks (b.png first), and their nails are sought")
+        .says("masks/b.png or masks/set/b.png");
 }
 
 /// The drawn nail in 16 bits of which `white` is full scale.

@@ -1,7 +1,7 @@
 //! Poses by their names: their order wherever they are listed, which is that of the thesis' figures (Fig. 51 and 53 to
 //! 56), then the alphabet; and what names of poses and subjects look like slips.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::words::{nearest, plain, twins};
 
@@ -46,7 +46,8 @@ pub(in crate::photo) fn doubts<'a, I: Iterator<Item = (&'a str, &'a str)>>(names
     let subjects = || names().map(|(_, subject)| subject);
     let misspelt = misspelt(&poses, &counts);
     let places = twins("subjects", subjects()).into_iter().chain(twins("poses", poses.iter().copied()));
-    as_poses(&poses, subjects().collect()).into_iter().chain(misspelt).chain(places).collect()
+    let slips = as_poses(&poses, subjects().collect()).into_iter().chain(misspelt).chain(places);
+    slips.chain(poses_in_names(&names().collect::<Vec<_>>())).chain(again(names())).collect()
 }
 
 /// Subjects that have the names of poses, where no pose has: folders of people, or columns that were exchanged.
@@ -66,6 +67,56 @@ fn as_poses(poses: &[&str], mut subjects: Vec<&str>) -> Option<String> {
             poses[..poses.len().min(NAMES)].join(", ")
         )
     })
+}
+
+/// The parts of a name, in small letters.
+fn parts(name: &str) -> Vec<String> {
+    name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).map(str::to_lowercase).collect()
+}
+
+/// Subjects whose names hold several poses of the thesis, which are not those that they are listed in.
+fn poses_in_names(names: &[(&str, &str)]) -> Option<String> {
+    let told = |(pose, subject): &(&str, &str)| {
+        let (subject, own) = (parts(subject), parts(pose));
+        let is_told = |other: &&&str| parts(other).iter().all(|part| subject.contains(part)) && parts(other) != own;
+        THESIS_POSES.iter().filter(is_told).max_by_key(|other| other.len()).copied()
+    };
+    let all: Vec<(&str, &str)> = names.iter().filter_map(|name| Some((told(name)?, name.1))).collect();
+    let (first, subject) = *all.first()?;
+    let several = all.iter().any(|(pose, _)| *pose != first);
+    (several && 2 * all.len() >= names.len()).then(|| {
+        format!(
+            "{} of {} subjects are called after a pose that is not the one that they are listed in (`{subject}` first): \
+             poses are folders, SET/<pose>/<subject>.png, or are named in photos.csv (file,subject,pose)",
+            all.len(),
+            names.len()
+        )
+    })
+}
+
+/// What a program or a person appends to the name of a photograph that is there already has so many letters at most.
+const APPENDED: usize = 5;
+
+/// Subjects of a pose whose names are another's and a little more, as of a photograph that was taken or saved again.
+fn again<'a>(names: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
+    let mut by_pose: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    names.for_each(|(pose, subject)| {
+        by_pose.entry(pose).or_default().insert(subject);
+    });
+    let of_pose = |subjects: &BTreeSet<&'a str>| -> Vec<[&'a str; 2]> {
+        let first = |subject: &&'a str| {
+            let ends = subject.char_indices().filter(|(_, c)| " _-(".contains(*c)).map(|(at, _)| at);
+            let mut ends = ends.filter(|&at| subject.len() - at <= 1 + APPENDED + 1);
+            Some([ends.find_map(|at| subjects.get(subject[..at].trim_end()).copied())?, *subject])
+        };
+        subjects.iter().filter_map(first).collect()
+    };
+    let all: Vec<[&str; 2]> = by_pose.values().flat_map(of_pose).collect();
+    let [one, other] = all.first()?;
+    let more = if all.len() > 1 { format!(" ({} more)", all.len() - 1) } else { String::new() };
+    Some(format!(
+        "`{one}` and `{other}` count as two people{more}: are these photographs of one person? Keep one for each pose"
+    ))
 }
 
 /// Poses of one photograph with a name that is nearly another's.
@@ -93,5 +144,20 @@ mod tests {
         let mut poses = ["relaxed", "flexion", "Normal", "extension", "normal", "nominal"];
         sort_by_pose(&mut poses, |pose| pose);
         assert_eq!(poses, ["nominal", "normal", "extension", "flexion", "Normal", "relaxed"]);
+    }
+    #[test]
+    fn poses_in_names_and_photographs_taken_again_are_named() {
+        let said = |names: &[(&str, &str)]| doubts(|| names.iter().copied()).join("; ");
+        let flat = ["a_normal", "a_flexion", "b_normal", "b-lateral-positive"].map(|subject| ("set", subject));
+        assert!(said(&flat).starts_with("4 of 4 subjects are called after a pose"), "{}", said(&flat));
+        let own = [("flexion", "a_flexion"), ("normal", "a_normal"), ("normal", "b_normal")];
+        // A group of people that is called so.
+        let group = [("rest", "normal_1"), ("rest", "normal_2"), ("rest", "patient_1")];
+        assert_eq!([said(&own), said(&group)].concat(), "");
+        for other in ["s01 (1)", "s01_2", "s01-b", "s01 copy"] {
+            let said = said(&[("p", "s01"), ("p", other), ("q", "s02")]);
+            assert!(said.contains(&format!("`s01` and `{other}` count as two people: ")), "{said}");
+        }
+        assert_eq!(said(&[("p", "s1"), ("p", "s10"), ("q", "s1_2"), ("p", "anna-maria"), ("p", "s1_another")]), "");
     }
 }

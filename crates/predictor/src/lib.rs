@@ -29,7 +29,7 @@ pub use data::delay::{Delay, delays};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
 pub use data::mismatch::{Apart, Difference, Mismatch, Parts, beside_model};
 pub use data::path::{paths, repeated_paths};
-pub use data::shared::shared;
+pub use data::shared::{shared, shared_within};
 pub use evaluate::{
     Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Fit, Flattery, Fold, FoldResult,
     IntervalFault, Intervals, Leak, LearningFault, LearningPoint, MagnitudeFault, Method, MethodScore, Predict, Scores,

@@ -8,6 +8,7 @@ use lunula_hemodynamics::{Load, LoadFault, Loads, Parameters};
 use super::columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::{LogReading, doubts};
+use crate::median::ends;
 
 /// Pressures that are nowhere greater hardly press on vessels of kilopascals, and are in another unit (assumed).
 const HARDLY_PA: f64 = 200.0;
@@ -27,8 +28,13 @@ pub(in crate::hemodynamics) fn hardly_pressed(columns: &[(&str, &[f64])]) -> Opt
              mmHg? Write them in Pa"
         ));
     }
-    let is_other = |most: f64| most > 0.0 && most < HARDLY_PA && largest > APART * most;
-    let (name, most) = each.iter().find(|(_, most)| is_other(*most))?;
+    // Not the noise or the offset of one that does not press.
+    let presses = |values: &[f64]| {
+        let [least, most] = ends(values.iter().copied());
+        least > -0.1 * most && least < 0.5 * most && most < HARDLY_PA && largest > APART * most
+    };
+    let (name, values) = columns.iter().find(|(_, values)| presses(values))?;
+    let most = most(values);
     Some(format!(
         "no pressure of {name} is greater than {most} Pa, and the other reaches {largest} Pa: is {name} in kPa or \
          mmHg? Write it in Pa"

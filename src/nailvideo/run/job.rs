@@ -16,7 +16,7 @@ use super::draw::{Thumbnails, draw};
 use super::plan::{light_of, steps};
 use super::report::{FrameCounts, MapFigures, NailFigures, NailVideoFigures, NailVideoReport, PhotodiodeFigures};
 use super::results::{CellTable, Kept, MotionTable, Reading, photodiodes, presses};
-use super::traces::{ends, middle, repeated, traces};
+use super::traces::{ends, leaps, middle, repeated, traces};
 use crate::figure::{encode_png, png};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -441,6 +441,7 @@ impl Job<'_> {
             report.warnings.push("the video is grey: light is not taken off (--light none)".to_owned());
         }
         report.warnings.extend(repeated(&traces, &noise, |row| kept[row].index));
+        report.warnings.extend(leaps(&traces, |row| kept[row].index));
         report.warnings.extend(reversed(&pressed));
         if noise.iter().all(Option::is_none) {
             report.warnings.push("too few frames to know the photodiodes' noise: no standard errors".to_owned());

@@ -1,7 +1,7 @@
 //! From the rows that are kept of all frames to the traces in which presses are looked for.
 
 use super::results::Kept;
-use crate::median::median_of;
+use crate::median::{ends as ends_of, median_of};
 use crate::nail::Positions;
 use crate::nailvideo::options::Light;
 use crate::nailvideo::press::Trace;
@@ -75,6 +75,41 @@ pub(super) fn repeated(traces: &[Trace], noise: &[Option<f64>], index: impl Fn(u
     })
 }
 
+/// In the median of photodiodes, a leap from frame to frame of this share of how far each goes, and of so many times the
+/// largest of the two frames before and behind, is none of blood (phantoms as they are, of 10 and 30 frames a second,
+/// with light and exposure that drift: 0.33 and 1.8 at most; with seconds cut out of a press 0.63 to 0.88 and 10 to 127).
+const LEAP: f64 = 0.25;
+const LEAPS: f64 = 5.0;
+
+/// What to say where all photodiodes leap in one frame, and go on quietly: times behind it are not the film's.
+pub(super) fn leaps(traces: &[Trace], index: impl Fn(usize) -> u64) -> Option<String> {
+    let spans: Vec<f64> =
+        traces.iter().map(|trace| ends_of(trace.values.iter().copied())).map(|[a, b]| b - a).collect();
+    let change = |frame: usize| {
+        let of = |(trace, span): (&Trace, &f64)| (trace.values[frame] - trace.values[frame - 1]).abs() / span;
+        let known: Vec<f64> = traces.iter().zip(&spans).map(of).filter(|change| change.is_finite()).collect();
+        median_of(known.iter().copied()).filter(|_| known.len() >= COMPARED)
+    };
+    let frames = traces.first()?.values.len();
+    let changes: Vec<Option<f64>> = (1..frames).map(change).collect();
+    let leap = |around: &[Option<f64>]| {
+        let [a, b, own, c, d] = <[Option<f64>; 5]>::try_from(around).ok()?;
+        let beside = [a?, b?, c?, d?].into_iter().fold(0.0, f64::max);
+        own.filter(|own| *own > LEAP && *own > LEAPS * beside)
+    };
+    let all: Vec<(usize, f64)> =
+        changes.windows(5).enumerate().filter_map(|(k, around)| Some((k + 3, leap(around)?))).collect();
+    let (first, share) = *all.first()?;
+    Some(format!(
+        "the photodiodes leap by {:.0} % of all that they change, from one frame to the next, in {} place(s), the first \
+         before frame {}: was the video cut there, or has it too few pictures a second? Onsets and time constants of \
+         presses.csv are then not the nail's",
+        100.0 * share,
+        all.len(),
+        index(first)
+    ))
+}
+
 /// The median of what is known.
 pub(super) fn middle(all: impl Iterator<Item = f64>) -> Option<f64> {
     median_of(all.filter(|value| value.is_finite()))
@@ -101,6 +136,23 @@ mod tests {
         ];
         assert_eq!(repeated(&traces[..2], &[Some(0.06); 2], |row| row as u64), None, "two may agree by chance");
         repeated(&traces, &[Some(0.06); 3], |row| row as u64)
+    }
+
+    #[test]
+    fn a_video_that_was_cut_in_a_press_is_seen() {
+        let said = |shown: &dyn Fn(usize) -> usize| {
+            let noise = |k: usize| 0.1 * ((((k * 7919 + 31) * (k + 17)) % 2003) as f64 / 1001.0 - 1.0);
+            let press = |k: usize| 20.0 * (1.0 - (-(k.saturating_sub(60) as f64) / 6.0).exp());
+            let traces = [1.0, -0.5, 0.7].map(|by| {
+                let values = (0..150).map(|frame| by * press(shown(frame)) + noise(frame)).collect();
+                Trace { name: "P1".to_owned(), values, red: Vec::new() }
+            });
+            leaps(&traces, |row| row as u64)
+        };
+        assert_eq!(said(&|k| k), None);
+        assert_eq!(said(&|k| 3 * k), None, "10 frames a second");
+        let cut = said(&|k| if k < 62 { k } else { k + 20 }).expect("it was cut");
+        assert!(cut.contains("in 1 place(s), the first before frame 62"), "{cut}");
     }
 
     #[test]

@@ -160,6 +160,12 @@ pub enum TooLarge {
          as its neighbours; is it a finger's?"
     )]
     Others(f64),
+    /// Of two regions one is far longer than the other.
+    #[error(
+        "of the mask's two regions one is {0:.1} times as long as the other, and no nail is {LONGEST:.0} times as long \
+         as its neighbours; one of them is none, and it isn't known which."
+    )]
+    Two(f64),
 }
 
 /// The nails of a mask.
@@ -275,11 +281,12 @@ impl MaskOutlines {
         let doubt = |(at, nail): (usize, &Outline)| {
             let share = nail.area_px2() / mask_px;
             let others = lengths.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, length)| *length);
-            let times = median_of(others).map_or(0.0, |median| lengths[at] / median);
-            if share > LARGEST_SHARE {
-                Some(TooLarge::Picture(share))
-            } else {
-                (times > LONGEST).then_some(TooLarge::Others(times))
+            let times = median_of(others).map_or(1.0, |median| lengths[at] / median);
+            match lengths.len() {
+                _ if share > LARGEST_SHARE => Some(TooLarge::Picture(share)),
+                // A slip of the brush is the smaller one.
+                2 => Some(times.max(times.recip())).filter(|times| *times > LONGEST).map(TooLarge::Two),
+                _ => (times > LONGEST).then_some(TooLarge::Others(times)),
             }
         };
         self.nails.iter().enumerate().map(doubt).collect()

@@ -14,7 +14,7 @@ use crate::input;
 use crate::photo::error::MergeError;
 use crate::photo::hues::Hues;
 use crate::photo::normalize::{NailFrame, Survey};
-use crate::photo::outline::{Axis, Nail, Source};
+use crate::photo::outline::{Axis, Nail, Outline, Source};
 use crate::photo::pose::rank;
 use crate::photo::set::{Photo, PhotoSet};
 use crate::table::csv_bytes;
@@ -44,6 +44,8 @@ pub struct NailRow {
     pub(in crate::photo) hues: Hues,
     /// By how much the picture sees the drawn axis slant, degrees clockwise, where that is much.
     pub(in crate::photo) slants_deg: Option<f64>,
+    /// A point of the drawn outline that stands out alone, pixels.
+    pub(in crate::photo) spike_px: Option<[f64; 2]>,
     /// What the network sees instead of the drawn outline, in words.
     pub(in crate::photo) instead: Option<String>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
@@ -53,6 +55,7 @@ pub struct NailRow {
 impl NailRow {
     /// A nail that was not worked on yet.
     pub(in crate::photo) fn new(photo: usize, number: usize, nail: &Nail) -> Self {
+        let drawn = nail.outline.as_ref().filter(|_| nail.source == Source::Annotated);
         Self {
             photo,
             number,
@@ -65,6 +68,7 @@ impl NailRow {
             survey: None,
             hues: Hues::default(),
             slants_deg: nail.slants_deg,
+            spike_px: drawn.and_then(Outline::spike),
             instead: None,
             reason: String::new(),
         }

@@ -79,6 +79,18 @@ fn slanting(nails: &[Used]) -> Option<String> {
     ))
 }
 
+/// Nails whose drawn outline has a point far out.
+fn spiked(nails: &[Used]) -> Option<String> {
+    let such = nails.iter().filter_map(|nail| {
+        let [x, y] = nail.row.spike_px?;
+        Some(format!("{}, nail {} at ({x:.0}, {y:.0})", nail.photo.file, nail.row.number))
+    });
+    Some(format!(
+        "a point of the drawn outline stands out far from all others: {}; is it a slip? Look at it with `lunula edit`",
+        some(&such.collect::<Vec<_>>())?
+    ))
+}
+
 /// Nails that the network sees elsewhere than they are drawn.
 fn elsewhere(nails: &[Used]) -> Option<String> {
     let such = nails.iter().filter_map(|nail| Some((&nail.photo.file, nail.row.number, nail.row.instead.as_ref()?)));
@@ -103,6 +115,7 @@ pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow], looks: &[(&Photo, Look)])
         cut_off(&nails),
         linear(&nails),
         slanting(&nails),
+        spiked(&nails),
         elsewhere(&nails),
         folders(set),
         deeper(set),

@@ -16,7 +16,7 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::{MOST_AT_FULL_SCALE, Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
+use crate::photo::outline::{AxisUnknown, OutlinePlace, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NailRow, NailTable, nail_columns};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
@@ -212,6 +212,7 @@ impl<'a> Findings<'a> {
             .chain(copies)
             .chain(elsewhere)
             .chain(self.unclear())
+            .chain(self.without_mask())
             .chain(self.blurred())
             .chain(self.overexposed())
             .chain(doubts(self.set, &self.rows, &self.looks))
@@ -260,6 +261,26 @@ impl<'a> Findings<'a> {
                 unclear.len()
             )
         })
+    }
+
+    /// Photographs that have no mask where masks were given.
+    fn without_mask(&self) -> Option<String> {
+        let folder = self.options.outlines.masks.as_ref()?;
+        let has_none = |photo: &&Photo| {
+            matches!(self.options.outlines.locate(photo), OutlinePlace::Detection | OutlinePlace::Nowhere)
+        };
+        let without: Vec<&Photo> = self.set.photos.iter().filter(has_none).collect();
+        let first = without.first()?;
+        Some(format!(
+            "{} of {} photographs have no mask in {} ({} first), and their nails are sought: a mask is called as its \
+             photograph, {2}/{}.png or {2}/{}/{4}.png",
+            without.len(),
+            self.set.photos.len(),
+            folder.display(),
+            first.file,
+            first.path.file_stem().unwrap_or_default().to_string_lossy(),
+            first.pose
+        ))
     }
 
     /// Outlines that were taken for another photograph's.

@@ -4,7 +4,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use lunula_predictor::{Apart, Dataset, Delay, Difference, Mismatch, Parts, Recording, delays};
+use lunula_predictor::{
+    Apart, Dataset, Delay, Difference, Mismatch, Parts, Recording, delays, recording_hashes, shared_within,
+};
 use ndarray::{Axis, Slice};
 
 use super::blocks::TURNED;
@@ -201,6 +203,19 @@ pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], orders: &[Vec<u
         )
     };
     named.iter().map(say).collect()
+}
+
+/// Recordings that are parts of others beside them, and not whole copies, which are named elsewhere.
+pub(super) fn within(data: &Dataset) -> Option<String> {
+    let hashes = recording_hashes(data);
+    let all: Vec<(usize, usize)> =
+        shared_within(data).into_iter().filter(|(part, whole)| hashes[*part] != hashes[*whole]).collect();
+    let [part, whole] = all.first().map(|&(part, whole)| [part, whole].map(|k| &data.recordings()[k].name))?;
+    let more = if all.len() > 1 { format!(" ({} more alike)", all.len() - 1) } else { String::new() };
+    Some(format!(
+        "{part}: its rows are, or lie between, those of {whole}, by time and voltages, perhaps on another clock: a part \
+         or a copy of it{more}? It counts twice; keep one"
+    ))
 }
 
 /// What to say where files that are not known to be several persons' are as different as these.

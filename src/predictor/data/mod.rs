@@ -271,6 +271,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
 pub(crate) fn contradictions(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Vec<String> {
     let said = |data: &Dataset, parts: &[Range<usize>], orders: &[Vec<usize>]| {
         let alone = health::clocks(data).into_iter().chain(frozen::warnings(data)).chain(health::units([data]));
+        let alone = alone.chain(health::within(data));
         alone.chain(health::mismatched(data, parts, orders, names)).collect()
     };
     if data.inputs().iter().all(|name| cell(name).is_none()) {

@@ -304,7 +304,7 @@ fn leave_out_unseen(read: &mut Read) -> Result<Option<String>, PredictorError> {
 }
 
 /// Recordings that are to be others than those trained on, and are parts of them; whole ones are named elsewhere.
-fn parts(train: &Dataset, others: &Dataset, what: &str) -> Vec<String> {
+pub(in crate::predictor) fn parts(train: &Dataset, others: &Dataset, what: &str) -> Vec<String> {
     let say = |(other, of): (usize, usize)| {
         let [other, of] = [&others.recordings()[other].name, &train.recordings()[of].name];
         format!(

@@ -1,13 +1,17 @@
-//! Whether a recording to be tried on is a part of one trained on: a copy, a piece, or every other row.
+//! Whether a recording is a part of another, which it is tried on, or counted beside: a copy, a piece, every other row,
+//! or one of these on another clock.
 //!
 //! In: two [`Dataset`]s. Out: which recordings of the second were, by time and voltages, sampled together with one of
 //! the first. Errors on such rows are those on rows that the model has seen, and intervals from them hold too little.
 //!
 //! A row is compared with what lies about its time in the other recording, linear in between, in units of what each of
 //! that one's own rows is off its neighbours. Measured on phantom logs of touch: every other row is 0.8 to 1.0 of that
-//! off; a repetition by the same person, from the same time on, 6 and more.
+//! off; a repetition by the same person, from the same time on, 6 and more. On another clock only the same rows are
+//! parts, whatever digits they were rounded to: where some rows of the one are in the other says how far it is ahead.
 
 use std::ops::Range;
+
+use rayon::prelude::*;
 
 use super::path::Between;
 use crate::Dataset;
@@ -26,6 +30,12 @@ const TIMES: f64 = 1.5;
 const MOVES: f64 = 5.0;
 /// What rounding leaves, as a share of how far a column goes.
 const ROUNDING: f64 = 1e-9;
+/// The same rows are no further off each other than by this (assumed: digits that were cut off), where so many of some
+/// rows agree on how far the clock is ahead, to so many steps.
+const SAME: f64 = 0.5;
+const PROBES: usize = 5;
+const AGREE: usize = 4;
+const STEPS: f64 = 2.0;
 
 /// The recordings of `held` that are parts of one of `train`: their places, and that one's.
 ///
@@ -34,19 +44,64 @@ const ROUNDING: f64 = 1e-9;
 #[must_use]
 pub fn shared(train: &Dataset, held: &Dataset) -> Vec<(usize, usize)> {
     assert_eq!(train.inputs(), held.inputs(), "sets of the same inputs");
-    let places = |of: &Dataset| (0..of.recordings().len()).collect::<Vec<usize>>();
     let of = |b: usize| {
         let is_part = |a: &usize| is_part([train, held], [&train.recordings()[*a].rows, &held.recordings()[b].rows]);
-        places(train).into_iter().find(is_part).map(|a| (b, a))
+        (0..train.recordings().len()).find(is_part).map(|a| (b, a))
     };
-    places(held).into_iter().filter_map(of).collect()
+    (0..held.recordings().len()).filter_map(of).collect()
 }
 
-fn is_part([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
-    let [times, moments] = [&train.time_s()[rows[0].clone()], &held.time_s()[rows[1].clone()]];
+/// The recordings of one dataset that are parts of another of it: their places, and that one's, each once.
+#[must_use]
+pub fn shared_within(data: &Dataset) -> Vec<(usize, usize)> {
+    let rows = |k: usize| &data.recordings()[k].rows;
+    let of = |b: usize| {
+        let larger = |a: &usize| (rows(*a).len(), b) > (rows(b).len(), *a);
+        (0..data.recordings().len()).find(|a| larger(a) && is_part([data; 2], [rows(*a), rows(b)])).map(|a| (b, a))
+    };
+    (0..data.recordings().len()).into_par_iter().filter_map(of).collect()
+}
+
+fn is_part(sets: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
+    is_part_ahead(sets, rows, 0.0, TIMES)
+        || ahead_s(sets, rows).is_some_and(|ahead_s| is_part_ahead(sets, rows, ahead_s, SAME))
+}
+
+/// How far the clock of `train` seems to be ahead of that of `held`, by the rows that are nearest to some of it.
+fn ahead_s([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> Option<f64> {
+    let count = rows[1].len();
+    if count.min(rows[0].len()) < ROWS {
+        return None;
+    }
+    let usual_s = (train.time_s()[rows[0].end - 1] - train.time_s()[rows[0].start]) / (rows[0].len() - 1) as f64;
+    let ahead = |k: usize| {
+        let row = rows[1].start + k * count / (PROBES + 1);
+        let off = |other: usize| -> f64 {
+            train.x().row(other).iter().zip(held.x().row(row)).map(|(a, b)| (a - b) * (a - b)).sum()
+        };
+        let near = rows[0].clone().min_by(|a, b| off(*a).total_cmp(&off(*b)))?;
+        Some(train.time_s()[near] - held.time_s()[row])
+    };
+    let mut all: Vec<f64> = Vec::new();
+    for k in 1..=PROBES {
+        all.push(ahead(k)?);
+        all.sort_by(f64::total_cmp);
+        let middle = all[all.len() / 2];
+        let agree = all.iter().filter(|ahead_s| (*ahead_s - middle).abs() <= STEPS * usual_s).count();
+        if agree + PROBES < AGREE + all.len() {
+            return None;
+        }
+    }
+    Some(all[PROBES / 2]).filter(|middle| *middle != 0.0)
+}
+
+/// Whether it is, where the clock of the first is so far ahead, and rows may be so many times as far off.
+fn is_part_ahead([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2], ahead_s: f64, most: f64) -> bool {
+    let times = &train.time_s()[rows[0].clone()];
+    let moments: Vec<f64> = held.time_s()[rows[1].clone()].iter().map(|time_s| time_s + ahead_s).collect();
     let ascends =
         |times: &[f64]| times.windows(2).all(|pair| pair[0] <= pair[1]) && times.iter().all(|t| t.is_finite());
-    if times.len().min(moments.len()) < ROWS || !ascends(times) || !ascends(moments) {
+    if times.len().min(moments.len()) < ROWS || !ascends(times) || !ascends(&moments) {
         return false;
     }
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -77,7 +132,7 @@ fn is_part([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
         if goes > 0.0 && goes > MOVES * off {
             let there = |(&row, at): (&usize, &Between)| held.x()[[rows[1].start + row, column]] - at.value(own);
             moving += 1;
-            alike += usize::from(rms(about.iter().zip(&between).map(there)) <= TIMES * off + ROUNDING * goes);
+            alike += usize::from(rms(about.iter().zip(&between).map(there)) <= most * off + ROUNDING * goes);
         }
     }
     moving > 0 && alike == moving
@@ -115,6 +170,16 @@ mod tests {
             assert_eq!(shared(&whole, part), [(0, 0)]);
         }
         assert_eq!(shared(&set(&every(2, 0), 1, spiral), &odd), [(0, 0)]);
+        // Parts on another clock, one with fewer digits.
+        let moved = |of: &Dataset, digits: i32| {
+            let time_s: Vec<f64> = of.time_s().iter().map(|time_s| time_s - 7.3).collect();
+            let x = of.x().mapv(|value| (value * 10f64.powi(digits)).round() / 10f64.powi(digits));
+            let (inputs, targets) = (of.inputs().to_vec(), of.targets().to_vec());
+            Dataset::new(inputs, targets, time_s, x, of.y().clone(), of.recordings().to_vec()).unwrap()
+        };
+        for (part, digits) in [(&set(&all[300..800], 1, spiral), 12), (&whole, 3), (&odd, 4)] {
+            assert_eq!(shared(&whole, &moved(part, digits)), [(0, 0)]);
+        }
         // Another time, and another day's run of the same prompt, followed a little otherwise.
         let later: Vec<f64> = all.iter().map(|t| t + 0.4).collect();
         let again = set(&all, 2, |t| 0.94 * spiral(t) + 0.02 * (0.4 * t).cos());

@@ -154,10 +154,13 @@ mod tests {
         // An offset below 0, a short pull, nothing at all.
         let offset: Vec<f64> = pressed.iter().map(|pa| pa - 20.0).collect();
         let pull: Vec<f64> = (0..300).map(|k| if k < 5 { -5000.0 } else { pressed[k] }).collect();
-        for fine in [offset, pull, vec![-20.0; 300], vec![0.0; 300]] {
+        let noise: Vec<f64> = (0..300).map(|k| 15.0 * f64::from(k * k % 7 - 3)).collect();
+        for fine in [offset, pull, vec![-20.0; 300], vec![20.0; 300], vec![0.0; 300], noise] {
             assert_eq!(said(&fine, &pressed), Vec::<String>::new());
         }
         assert!(said(&[], &[]).is_empty());
+        let one = said(&pressed, &presses(3.0, 300));
+        assert!(one.len() == 1 && one[0].starts_with("no pressure of pf2_Pa is greater than 3 Pa, and"), "{one:?}");
         let in_kpa = said(&presses(5.0, 300), &presses(3.0, 300));
         assert!(in_kpa.len() == 1 && in_kpa[0].contains("greater than 5 Pa"), "{in_kpa:?}");
     }

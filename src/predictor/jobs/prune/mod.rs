@@ -14,6 +14,7 @@ use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, 
 use crate::job::{Outputs, Report, Watch};
 use crate::predictor::data::{DataFile, Wanted, read_files, units};
 use crate::predictor::error::PredictorError;
+use crate::predictor::jobs::train::parts;
 use crate::predictor::merit::figures::ByTarget;
 use crate::predictor::outputs::end;
 use crate::stages::{Stages, Step, left_out};
@@ -50,6 +51,7 @@ pub fn prune(
             compared.data.rows()
         ));
     }
+    warnings.extend(parts(&train.data, &compared.data, "compare on"));
     let mut figures = PruneFigures {
         data: train.files,
         validate: compared.files,
