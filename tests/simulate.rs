@@ -105,10 +105,10 @@ fn loads_that_never_act_or_suck_are_named() {
     dir.write("little.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n0.5,5000,100\n1,0,0\n");
     said("--loads little.csv --until 2").never_says("no pressure of");
     // Rows that miss what presses, and what pulsates.
-    said("--ph sine:10000+2000@1.2 --pf1 step:5000@0.101..0.109 --until 2 --every 0.5")
-        .says("--ph sine:10000+2000@1.2: repeats every 0.8333 s, and rows are 0.5 s apart")
-        .says("--pf1 step:5000@0.101..0.109: begins and ends between two rows");
-    said("--ph sine:10000+2000@1.2 --pf1 step:5000@0.101..1 --until 2 --every 0.1").never_says("--every");
+    said("--ph sine:10000+2000@5 --pf1 step:5000@0.12..0.18 --until 2")
+        .says("--ph sine:10000+2000@5: repeats every 0.2000 s, and rows are 0.1 s apart")
+        .says("--pf1 step:5000@0.12..0.18: begins and ends between two rows");
+    said("--ph sine:10000+2000@1.2 --pf1 step:5000@0.12..1 --until 2").never_says("smaller --every");
     run(&dir, "--static 0..9/3 --out s.csv --no-figures")
         .expect(0)
         .says("no pressure of --static is greater than 9 Pa");

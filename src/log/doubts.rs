@@ -290,10 +290,9 @@ fn filled_with_0(columns: &[(&str, &[f64])]) -> Option<String> {
     let mut runs: Vec<&[usize]> = order.chunk_by(|a, b| is_zero(*a) == is_zero(*b)).collect();
     runs.retain(|run| {
         let (first, after) = (run[0], run[0] + run.len());
-        let ends = [(first > 0).then_some(first), (after < rows).then_some(after)];
-        let least = ends.into_iter().flatten().map(step).reduce(f64::min);
-        let leaps = least.is_some_and(|least| least > LEAPS_N.max(LEAPS * usual_n));
-        is_zero(first) && run.len() >= ZERO_ROWS && leaps
+        // What was done before the recording, and after it, isn't known.
+        let is_inner = is_zero(first) && run.len() >= ZERO_ROWS && first > 0 && after < rows;
+        is_inner && step(first).min(step(after)) > LEAPS_N.max(LEAPS * usual_n)
     });
     let longest = runs.iter().max_by_key(|run| run.len())?;
     Some(format!(
@@ -400,8 +399,9 @@ mod tests {
             let fx: Vec<f64> = fz.iter().map(|fz| 0.1 * fz).collect();
             filled_with_0(&[("Fx_N", &fx[..]), ("Fz_N", &fz[..])])
         };
-        let filled = of(&|k, force| if (400..450).contains(&k) || k >= 800 { 0.0 } else { force.min(-0.1) });
-        let words = "in 2 stretch(es) of rows, the longest of 100 rows from row 801 on";
+        let gap = |k: usize| (400..450).contains(&k) || (700..800).contains(&k);
+        let filled = of(&|k, force| if gap(k) { 0.0 } else { force.min(-0.5) });
+        let words = "in 2 stretch(es) of rows, the longest of 100 rows from row 701 on";
         assert!(filled.as_ref().is_some_and(|said| said.contains(words)), "{filled:?}");
         // A transducer that rests at exactly 0, a press that begins and ends at once, and rows that are not known.
         assert_eq!(of(&|_, force| force.min(0.0)), None);

@@ -86,8 +86,8 @@ fn poses_in_names(names: &[(&str, &str)]) -> Option<String> {
     let several = all.iter().any(|(pose, _)| *pose != first);
     (several && 2 * all.len() >= names.len()).then(|| {
         format!(
-            "{} of {} subjects are called after a pose that is not the one that they are listed in (`{subject}` first): \
-             poses are folders, SET/<pose>/<subject>.png, or are named in photos.csv (file,subject,pose)",
+            "{} of {} subjects are called after a pose that is not the one that they are listed in (`{subject}` \
+             first): poses are folders, SET/<pose>/<subject>.png, or are named in photos.csv (file,subject,pose)",
             all.len(),
             names.len()
         )

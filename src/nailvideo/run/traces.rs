@@ -75,9 +75,10 @@ pub(super) fn repeated(traces: &[Trace], noise: &[Option<f64>], index: impl Fn(u
     })
 }
 
-/// In the median of photodiodes, a leap from frame to frame of this share of how far each goes, and of so many times the
-/// largest of the two frames before and behind, is none of blood (phantoms as they are, of 10 and 30 frames a second,
-/// with light and exposure that drift: 0.33 and 1.8 at most; with seconds cut out of a press 0.63 to 0.88 and 10 to 127).
+/// In the median of photodiodes, a leap from frame to frame of this share of how far each goes, and of so many times
+/// the largest of the two frames before and behind, is none of blood (phantoms as they are, of 10 and 30 frames a
+/// second, with light and exposure that drift: 0.33 and 1.8 at most; with seconds cut out of a press 0.63 to 0.88 and
+/// 10 to 127).
 const LEAP: f64 = 0.25;
 const LEAPS: f64 = 5.0;
 
@@ -101,9 +102,9 @@ pub(super) fn leaps(traces: &[Trace], index: impl Fn(usize) -> u64) -> Option<St
         changes.windows(5).enumerate().filter_map(|(k, around)| Some((k + 3, leap(around)?))).collect();
     let (first, share) = *all.first()?;
     Some(format!(
-        "the photodiodes leap by {:.0} % of all that they change, from one frame to the next, in {} place(s), the first \
-         before frame {}: was the video cut there, or has it too few pictures a second? Onsets and time constants of \
-         presses.csv are then not the nail's",
+        "the photodiodes leap by {:.0} % of all that they change, from one frame to the next, in {} place(s), the \
+         first before frame {}: was the video cut there, or has it too few pictures a second? Onsets and time constants \
+         of presses.csv are then not the nail's",
         100.0 * share,
         all.len(),
         index(first)

@@ -213,8 +213,8 @@ pub(super) fn within(data: &Dataset) -> Option<String> {
     let [part, whole] = all.first().map(|&(part, whole)| [part, whole].map(|k| &data.recordings()[k].name))?;
     let more = if all.len() > 1 { format!(" ({} more alike)", all.len() - 1) } else { String::new() };
     Some(format!(
-        "{part}: its rows are, or lie between, those of {whole}, by time and voltages, perhaps on another clock: a part \
-         or a copy of it{more}? It counts twice; keep one"
+        "{part}: its rows are, or lie between, those of {whole}, by time and voltages, perhaps on another clock: a \
+         part or a copy of it{more}? It counts twice; keep one"
     ))
 }
 
