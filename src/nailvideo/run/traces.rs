@@ -103,8 +103,8 @@ pub(super) fn leaps(traces: &[Trace], index: impl Fn(usize) -> u64) -> Option<St
     let (first, share) = *all.first()?;
     Some(format!(
         "the photodiodes leap by {:.0} % of all that they change, from one frame to the next, in {} place(s), the \
-         first before frame {}: was the video cut there, or has it too few pictures a second? Onsets and time constants \
-         of presses.csv are then not the nail's",
+         first before frame {}: was the video cut there, or has it too few pictures a second? Onsets and time \
+         constants of presses.csv are then not the nail's",
         100.0 * share,
         all.len(),
         index(first)
