@@ -83,6 +83,30 @@ fn a_recording_under_two_names_is_told() {
 }
 
 #[test]
+fn a_model_of_nothing_and_one_of_several_persons_are_named() {
+    let folder = Folder::new();
+    let [a, b] = folder.two();
+    let of = |inputs: &TrainInputs| folder.train(inputs, "force", linear()).unwrap().1;
+    let own = of(&inputs(&[&a, &b], &[], &[]));
+    assert!(own.notes.iter().all(|note| !note.contains("persons")), "{:?}", own.notes);
+    assert!(own.warnings.iter().all(|said| !said.contains("hardly anything")), "{:?}", own.warnings);
+    let mut both = inputs(&[&a, &b], &[], &[]);
+    both.data.iter_mut().zip(["anna", "ben"]).for_each(|(file, who)| file.subject = Some(who.to_owned()));
+    let notes = of(&both).notes;
+    assert!(notes.iter().any(|note| note.starts_with("one model of 2 persons (anna, ben): ")), "{notes:?}");
+    // What a transducer says that nobody touches.
+    let still = recording(600, 0.0, 1.0, true).lines().enumerate().fold(String::new(), |text, (k, line)| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if k > 0 {
+            (4..7).for_each(|at| cells[at] = format!("{}", 1e-3 * f64::from((k * k * at) as u32 % 17)));
+        }
+        text + &cells.join(",") + "\n"
+    });
+    let warnings = of(&inputs(&[&folder.file("still.csv", still)], &[], &[])).warnings;
+    assert!(warnings.iter().any(|said| said.contains("explains hardly anything")), "{warnings:?}");
+}
+
+#[test]
 fn predictions_beyond_a_number_are_no_success() {
     let folder = Folder::new();
     let (a, huge) = (folder.recorded("a.csv", 0.0, 1e-300, true), folder.recorded("b.csv", 0.5, 1e300, true));
