@@ -517,7 +517,7 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     // A threshold of contact within the force's noise, and a device that says for a while that nothing is touched.
     write("noise.csv", &|t_s, light, force| {
         let k = (100.0 * t_s).round() as u64;
-        format!("{t_s},{light},{}\n", if k * k * 31 % 17 < 4 { force - 0.2 } else { force })
+        format!("{t_s},{light},{}\n", if k * k * 31 % 17 < 1 { force - 0.2 } else { force })
     });
     judge(&dir, "noise.csv", &[]).expect(0).says("contacts last a row or two, which no finger does");
     dir.write(
