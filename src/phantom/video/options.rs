@@ -193,7 +193,7 @@ pub struct VideoOptions {
     pub codec: Codec,
     /// The encoder's constant rate factor.
     pub crf: u32,
-    /// The encoder's preset, of [`Coding::PRESETS`].
+    /// The encoder's preset, of [`Coding::PRESETS`](super::Coding::PRESETS).
     pub preset: &'static str,
     /// Joints that the marker file asks for.
     pub joints: Vec<String>,

@@ -164,7 +164,7 @@ mod tests {
         }
         let others = [([40.0, 25.0], 80.0, 57.0), ([37.0, 25.0], 75.0, 60.0), ([40.0, 22.0], 75.0, 60.0)];
         let others = others.map(|(size, x, y)| finger(size, x, y));
-        assert_eq!(pairs(&[&[one.clone()], &others[..]].concat()), [[0; 2]; 0]);
+        assert_eq!(pairs(&[std::slice::from_ref(&one), &others[..]].concat()), [[0; 2]; 0]);
         let blank = RgbImage::from_pixel(160, 120, Rgb([90; 3]));
         assert_eq!(pairs(&[blank.clone(), blank]), [[0; 2]; 0]);
     }
