@@ -374,10 +374,7 @@ impl Work<'_> {
                 all => format!("none of its {} nails could be used; the first: {}", all.len(), all[0].0.reason),
             });
         } else {
-            let look = match self.stages.time("look", || Look::of(&picture.image)) {
-                Ok(look) => look,
-                Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
-            };
+            let look = self.stages.time("look", || Look::of(&picture.image));
             done.look = Some(look.clone());
             self.stages.time("add up", || {
                 let mut pose = locked(&self.poses[photo.pose.as_str()]);

@@ -14,10 +14,13 @@ use image::DynamicImage;
 use serde::{Deserialize, Serialize};
 
 use crate::photograph::as_rgb8;
-use crate::vision::{VisionError, resized};
 
 const SIDE: usize = 24;
 const CELLS: usize = SIDE * SIDE;
+/// So many pixels are read along each side of a cell. Means over all of them, by OpenCV's `resize`, take 4.5 times as
+/// long (640 x 480: 1.9 and 0.42 ms, `lunula photos -v`) and show no more: half-size copies of 40 real photographs are
+/// 0.0019 off at most; with half as many reads 0.0077.
+const READS: usize = 12;
 /// Less than this apart, two photographs are one.
 const ONE: f32 = 0.006;
 /// A picture whose cells have a smaller SD, of 255, shows nothing.
@@ -44,12 +47,31 @@ impl TryFrom<String> for Look {
 }
 
 impl Look {
-    /// # Errors
-    /// OpenCV's.
-    pub(in crate::photo) fn of(image: &DynamicImage) -> Result<Self, VisionError> {
+    pub(in crate::photo) fn of(image: &DynamicImage) -> Self {
         let size = [image.width() as usize, image.height() as usize];
-        let small = resized(&as_rgb8(image), size, [SIDE; 2])?;
-        Ok(Self(std::array::from_fn(|at| small[3 * at + 1])))
+        match image {
+            DynamicImage::ImageLuma8(grey) => Self::read(grey, 1, 0, size),
+            other => Self::read(&as_rgb8(other), 3, 1, size),
+        }
+    }
+
+    /// Of samples in `channels`, of which `channel` is looked at.
+    fn read(samples: &[u8], channels: usize, channel: usize, [width, height]: [usize; 2]) -> Self {
+        let places = |extent: usize| -> Vec<usize> {
+            (0..SIDE * READS).map(|k| (2 * k + 1) * extent / (2 * SIDE * READS)).collect()
+        };
+        let (columns, rows) = (places(width), places(height));
+        let mut sums = [0_u32; CELLS];
+        for (rows, sums) in rows.chunks_exact(READS).zip(sums.chunks_exact_mut(SIDE)) {
+            for row in rows {
+                let row = &samples[channels * width * row..][..channels * width];
+                for (columns, sum) in columns.chunks_exact(READS).zip(&mut *sums) {
+                    *sum += columns.iter().map(|column| u32::from(row[channels * column + channel])).sum::<u32>();
+                }
+            }
+        }
+        let count = (READS * READS) as u32;
+        Self(sums.map(|sum| ((sum + count / 2) / count) as u8))
     }
 
     fn shape(&self) -> Option<Shape> {
@@ -143,8 +165,7 @@ mod tests {
     }
 
     fn pairs(pictures: &[RgbImage]) -> Vec<[usize; 2]> {
-        let looks: Vec<Look> =
-            pictures.iter().map(|one| Look::of(&DynamicImage::from(one.clone())).expect("a look")).collect();
+        let looks: Vec<Look> = pictures.iter().map(|one| Look::of(&DynamicImage::from(one.clone()))).collect();
         seen_again(looks.iter().enumerate(), |one, other| one != other)
     }
 
@@ -171,7 +192,7 @@ mod tests {
 
     #[test]
     fn a_look_is_read_as_it_is_written_and_nothing_else_is() {
-        let look = Look::of(&finger([40.0, 25.0], 75.0, 60.0).into()).expect("a look");
+        let look = Look::of(&finger([40.0, 25.0], 75.0, 60.0).into());
         let text = serde_json::to_string(&look).expect("a text");
         assert_eq!(serde_json::from_str::<Look>(&text).expect("a look"), look);
         for (wrong, why) in [("\"AAAA\"", "576 cells, not 3"), ("\"?\"", "Invalid"), ("7", "invalid type")] {
