@@ -113,6 +113,7 @@ pub(super) fn info(
     if let Some(rate) = rate_without_times_hz {
         warnings.push(format!("the file holds no times; frames are taken to be 1/{rate} s apart"));
     }
+    warnings.extend(slow_motion(source, &stream));
     if let Some(from) = &converted {
         warnings.push(format!("its samples ({from}) were converted to {} by FFmpeg", name(planes.format())));
     }
@@ -149,6 +150,30 @@ fn is_neutral(planes: &frame::Video, number: usize, format: &Format) -> bool {
 
 fn aspect(ratio: Rational) -> Option<f64> {
     (ratio.0 > 0 && ratio.1 > 0).then(|| f64::from(ratio.0) / f64::from(ratio.1))
+}
+
+/// What to say of frames that were taken at another rate than the file plays them at, as Android writes it down
+/// (`com.android.capture.fps`). In the dark a camera slows down by itself, by less than this factor as a rule.
+fn slow_motion(source: &Source, stream: &Stream<'_>) -> Option<String> {
+    const OTHER_RATE: f64 = 1.8;
+    let taken_hz = source.taken_hz()?;
+    let played_hz = Some(f64::from(stream.avg_frame_rate())).filter(|hz| hz.is_finite() && *hz > 0.0)?;
+    let times = taken_hz / played_hz;
+    let kind = match times {
+        OTHER_RATE.. => "slow motion",
+        times if times <= 1.0 / OTHER_RATE => "a time lapse",
+        _ => return None,
+    };
+    let short = |value: f64| (value * 1e4).round() / 1e4;
+    Some(format!(
+        "the camera wrote down that it took {} frames a second, and the file plays {} a second: is it {kind}? Then all \
+         times here are {} times what they were; `ffmpeg -itsscale {:.6} -i FILE -c copy FILMED.mp4` writes the video \
+         with the times at which it was filmed",
+        short(taken_hz),
+        short(played_hz),
+        short(times),
+        1.0 / times
+    ))
 }
 
 /// The display matrix: rows (a, b, u), (c, d, v), (x, y, w) of 16.16 numbers; shown = (a x + c y, b x + d y).

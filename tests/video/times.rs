@@ -1,5 +1,9 @@
 //! Each frame's own time, exact to the container's ticks.
 
+use std::path::Path;
+
+use ffmpeg::{Dictionary, Packet};
+use ffmpeg_next as ffmpeg;
 use lunula::video::{Encoding, Video};
 
 use super::scene::{SMALL, Seen, find, level, patched, read, uneven, write};
@@ -66,6 +70,48 @@ fn without_times_frames_are_counted_and_that_is_said() {
     for (k, frame) in seen.iter().enumerate() {
         assert!((frame.time_s - k as f64 / rate).abs() <= SAME_TIME_S);
         assert!((frame.level.unwrap() - f32::from(level(k as u64))).abs() <= SAME_LEVEL);
+    }
+}
+
+/// Writes the packets of a film again, as one that a phone took at `taken_hz`.
+fn taken_at(from: &Path, to: &Path, taken_hz: &str) {
+    let mut input = ffmpeg::format::input(&from).unwrap();
+    let mut output = ffmpeg::format::output(&to).unwrap();
+    output.add_stream(None::<ffmpeg::Codec>).unwrap().set_parameters(input.stream(0).unwrap().parameters());
+    let mut about = Dictionary::new();
+    about.set("com.android.capture.fps", taken_hz);
+    output.set_metadata(about);
+    let mut how = Dictionary::new();
+    how.set("movflags", "use_metadata_tags");
+    output.write_header_with(how).unwrap();
+    let from_base = input.stream(0).unwrap().time_base();
+    let to_base = output.stream(0).unwrap().time_base();
+    let mut packet = Packet::empty();
+    while packet.read(&mut input).is_ok() {
+        packet.rescale_ts(from_base, to_base);
+        packet.set_position(-1);
+        packet.write_interleaved(&mut output).unwrap();
+    }
+    output.write_trailer().unwrap();
+}
+
+#[test]
+fn slow_motion_that_the_camera_wrote_down_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, taken) = (folder.path().join("a.mp4"), folder.path().join("b.mp4"));
+    write(&path, &Encoding { ticks_per_s: 30, ticks_a_picture: 1, ..encoding() }, 40, |k| k as i64);
+    let said = |hz: &str| {
+        taken_at(&path, &taken, hz);
+        let video = Video::open(&taken, 1).unwrap();
+        video.info().warnings.iter().find(|words| words.contains("the camera wrote down")).cloned()
+    };
+    for (hz, words) in
+        [("240", "slow motion? Then all times here are 8 "), ("1", "lapse? Then all times here are 0.0333 ")]
+    {
+        assert!(said(hz).is_some_and(|warning| warning.contains(words)), "{hz}: {:?}", said(hz));
+    }
+    for hz in ["30", "24.5", "0", "-1", "nan", "fast"] {
+        assert_eq!(said(hz), None, "{hz}");
     }
 }
 

@@ -88,7 +88,7 @@ impl Row {
         Some((self.found_s.0, self.found_s.1?))
     }
 
-    /// The step.
+    /// The step, as much as is seen of it.
     pub(in crate::nailvideo) fn depth(&self) -> Option<f64> {
         match &self.course {
             Ok(course) => Some(course.depth),
@@ -116,6 +116,7 @@ impl Row {
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::nailvideo) struct Refused {
     pub(in crate::nailvideo) why: &'static str,
+    /// The step, as much as is seen of it.
     pub(in crate::nailvideo) depth: Option<f64>,
 }
 
@@ -247,7 +248,11 @@ fn course(
     }
     let is_seen = course.seen >= LEAST_SEEN;
     if !is_seen {
-        return refused("its end is not seen before the next event or the video's end", depth);
+        // What a course would come to beyond what is seen of it is not known.
+        return refused(
+            "its end is not seen before the next event or the video's end",
+            Some(course.depth * course.seen),
+        );
     }
     if course.sd > MOST_RESIDUAL * course.depth.abs() && course.sd > MOST_RESIDUAL_SDS * noise {
         return refused("its course is not exponential", depth);

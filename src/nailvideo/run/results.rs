@@ -194,7 +194,7 @@ pub(super) fn presses(
         ("use", USE.to_owned()),
         ("low, high", "95 % interval: noise with its correlation, end level, model".to_owned()),
         ("t50, t90", "from the onset; tau: the time constant, of two exponentials the faster's".to_owned()),
-        ("depth", format!("the step: {}", light.unit())),
+        ("depth", format!("the step, as much as is seen of it: {}", light.unit())),
     ];
     let mut table = create(staging, outputs, "presses", columns, &facts)?;
     for row in rows {

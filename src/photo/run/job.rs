@@ -85,6 +85,9 @@ pub fn run(
         findings.details.extend(one.detail.map(|detail| (photo, detail)));
         findings.looks.extend(one.look.map(|look| (photo, look)));
         findings.drawn_elsewhere.extend(one.drawn_on.map(|other| (photo, other)));
+        if matches!(one.outlines, OutlinePlace::Detection | OutlinePlace::Nowhere) {
+            findings.without_outline.push(photo);
+        }
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
         for (row, thumbnail) in one.nails {
             findings.rows.push(row);

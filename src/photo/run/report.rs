@@ -16,7 +16,7 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::{MOST_AT_FULL_SCALE, Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{AxisUnknown, OutlinePlace, SavedOutlines, Source};
+use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NailRow, NailTable, nail_columns};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
@@ -126,6 +126,8 @@ pub(in crate::photo) struct Findings<'a> {
     pub(in crate::photo) detects: bool,
     /// Detected outlines, where they were to be saved.
     pub(in crate::photo) outlines: Option<SavedOutlines>,
+    /// Photographs that have neither outline nor mask.
+    pub(in crate::photo) without_outline: Vec<&'a Photo>,
     /// Photographs whose outlines say that they were drawn on another, and on which.
     pub(in crate::photo) drawn_elsewhere: Vec<(&'a Photo, PathBuf)>,
     /// Photographs on which nails were found, and how much fine detail those show.
@@ -160,6 +162,7 @@ impl<'a> Findings<'a> {
             left_out: Vec::new(),
             detects: false,
             outlines: None,
+            without_outline: Vec::new(),
             drawn_elsewhere: Vec::new(),
             details: Vec::new(),
             looks: Vec::new(),
@@ -266,15 +269,11 @@ impl<'a> Findings<'a> {
     /// Photographs that have no mask where masks were given.
     fn without_mask(&self) -> Option<String> {
         let folder = self.options.outlines.masks.as_ref()?;
-        let has_none = |photo: &&Photo| {
-            matches!(self.options.outlines.locate(photo), OutlinePlace::Detection | OutlinePlace::Nowhere)
-        };
-        let without: Vec<&Photo> = self.set.photos.iter().filter(has_none).collect();
-        let first = without.first()?;
+        let first = self.without_outline.first()?;
         Some(format!(
             "{} of {} photographs have no mask in {} ({} first), and their nails are sought: a mask is called as its \
              photograph, {2}/{}.png or {2}/{}/{4}.png",
-            without.len(),
+            self.without_outline.len(),
             self.set.photos.len(),
             folder.display(),
             first.file,

@@ -1,5 +1,5 @@
-//! Angles that leap between two neighbouring frames and are steady before and after: a video that was cut, or joined of
-//! several takes. Times after a cut are not those of the film.
+//! Angles that leap between two neighbouring frames, off their course before and after: a video that was cut, or
+//! joined of several takes. Times after a cut are not those of the film.
 //!
 //! In: from frame to frame the joints' angles. Out: what to say where they leap off their course: by how much a change
 //! differs from the median of those about it. A finger that is fast changes its course in the frames beside as well,
@@ -81,8 +81,8 @@ impl Cut {
         let first = *frames.first().filter(|_| frames.len() <= CUTS)?;
         let most_rad = self.leaps.iter().map(|(_, by_rad)| *by_rad).fold(0.0, f64::max);
         Some(format!(
-            "angles leap by up to {:.0} degrees from one frame to the next, and are steady before and after, in {} \
-             place(s), the first before frame {first}: was the video cut, joined of several, or a marker stuck on \
+            "angles leap by up to {:.0} degrees from one frame to the next, in {} place(s), the first \
+             before frame {first}: was the video cut, joined of several, or a marker stuck on \
              again? Times after a cut are not the film's, and angles by another place of a marker not those before",
             most_rad.to_degrees(),
             frames.len()

@@ -218,11 +218,14 @@ pub(super) fn within(data: &Dataset) -> Option<String> {
     ))
 }
 
+/// The persons that recordings are known to be of; where nobody says whose a file is, its name stands for one.
+pub(in crate::predictor) fn persons<'a>(data: &'a Dataset, files: &[&str]) -> BTreeSet<&'a str> {
+    data.recordings().iter().map(|one| one.subject.as_str()).filter(|person| !files.contains(person)).collect()
+}
+
 /// What to say where files that are not known to be several persons' are as different as these.
 fn of_several_persons(data: &Dataset, parts: &Parts, names: &[&str]) -> Option<String> {
-    // Where nobody says whose a file is, it stands for a person.
-    let persons = data.recordings().iter().map(|one| one.subject.as_str()).filter(|person| !names.contains(person));
-    if persons.collect::<BTreeSet<_>>().len() > 1 {
+    if persons(data, names).len() > 1 {
         return None;
     }
     let Apart { part, target, times } = parts.apart()?;

@@ -41,7 +41,7 @@ use source::{Source, agree};
 
 pub(crate) use columns::{cell, missing};
 pub use file::DataFile;
-pub(in crate::predictor) use health::{looks, units};
+pub(in crate::predictor) use health::{looks, persons, units};
 
 /// Which rows of recordings count.
 #[derive(Debug, Clone, PartialEq, Default, Args)]

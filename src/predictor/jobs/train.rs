@@ -4,7 +4,6 @@
 //! others on which a network stops early. Out: the model file and what it reaches. Rows that are reported are never
 //! those that training has seen.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -17,7 +16,7 @@ use serde::Serialize;
 
 use crate::files::{Places, WriteError};
 use crate::job::{Report, Watch};
-use crate::predictor::data::{DataFile, FileRows, Read, RowOptions, Wanted, read_files};
+use crate::predictor::data::{DataFile, FileRows, Read, RowOptions, Wanted, persons, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::learning;
 use crate::predictor::merit::doubts::{doubts, outside_cone};
@@ -266,10 +265,8 @@ pub fn train(
 
 /// What to say where one model is of several persons.
 fn several_persons(data: &Dataset, files: &[DataFile]) -> Option<String> {
-    // Where nobody says whose a file is, it stands for a person.
-    let is_file = |subject: &&str| files.iter().any(|file| file.name == *subject);
-    let persons = data.recordings().iter().map(|one| one.subject.as_str()).filter(|subject| !is_file(subject));
-    let persons: BTreeSet<&str> = persons.collect();
+    let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+    let persons = persons(data, &names);
     (persons.len() > 1).then(|| {
         format!(
             "one model of {} persons ({}): each one's own is mostly better; name files of one person, or write each = \

@@ -96,6 +96,12 @@ impl Source {
         self.stream().and_then(|stream| u64::try_from(stream.frames()).ok()).filter(|&frames| frames > 0)
     }
 
+    /// Frames a second that the camera took, where it says so; the file may play them at another rate.
+    pub(in crate::video) fn taken_hz(&self) -> Option<f64> {
+        let stated = self.input.metadata().get("com.android.capture.fps")?.trim().parse().ok();
+        stated.filter(|hz: &f64| hz.is_finite() && *hz > 0.0)
+    }
+
     /// The container's seconds.
     pub(in crate::video) fn duration_s(&self) -> Option<f64> {
         let stream = self.stream()?;

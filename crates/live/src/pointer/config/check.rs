@@ -5,8 +5,10 @@ use std::ops::RangeInclusive;
 use super::file::{ConfigFault, ConfigFaults};
 use super::{Click, Config, Mode};
 
-/// The longest time of any key, s (assumed).
+/// The longest time of any key, s, and of what a person waits for at every touch: longer ones, of which many are
+/// milliseconds, leave a pointer that doesn't move or a button that isn't pressed (assumed).
 const LONGEST_S: f64 = 3600.0;
+const LONGEST_WAIT_S: f64 = 10.0;
 /// The longest watchdog, s: a button must not be held by nothing for longer (assumed).
 const LONGEST_WATCHDOG_S: f64 = 10.0;
 /// Times whose motion is taken back, s (assumed).
@@ -55,22 +57,22 @@ impl Config {
             above("click_n", self.click_n, GREATEST_N, "N"),
             above("release_n", self.release_n, GREATEST_N, "N"),
             above("rise_n", self.rise_n, GREATEST_N, "N"),
-            above("rise_time_s", self.rise_time_s, LONGEST_S, "s"),
-            from_zero("lock_s", self.lock_s, LONGEST_S, "s"),
-            from_zero("settle_s", self.settle_s, LONGEST_S, "s"),
+            above("rise_time_s", self.rise_time_s, LONGEST_WAIT_S, "s"),
+            from_zero("lock_s", self.lock_s, LONGEST_WAIT_S, "s"),
+            from_zero("settle_s", self.settle_s, LONGEST_WAIT_S, "s"),
             (self.take_back_s != 0.0 && !TAKE_BACK_S.contains(&self.take_back_s)).then(|| {
                 let (least, most) = (TAKE_BACK_S.start(), TAKE_BACK_S.end());
                 let what = format!("take_back_s = {}: choose 0, or {least} to {most} s", self.take_back_s);
                 ConfigFault::of("take_back_s", what)
             }),
             above("drag_after_s", self.drag_after_s, LONGEST_S, "s"),
-            above("tap_max_s", self.tap_max_s, LONGEST_S, "s"),
+            above("tap_max_s", self.tap_max_s, LONGEST_WAIT_S, "s"),
             angle("scroll_rest_deg", self.scroll_rest_deg),
             from_zero("scroll_dead_zone_deg", self.scroll_dead_zone_deg, 180.0, "degrees"),
             above("scroll_lines_per_s_per_deg", self.scroll_lines_per_s_per_deg, 1000.0, "lines/s per degree"),
             above("scroll_cap_lines_per_s", self.scroll_cap_lines_per_s, 1000.0, "lines/s"),
-            from_zero("scroll_after_s", self.scroll_after_s, LONGEST_S, "s"),
-            from_zero("zero_after_s", self.zero_after_s, LONGEST_S, "s"),
+            from_zero("scroll_after_s", self.scroll_after_s, LONGEST_WAIT_S, "s"),
+            from_zero("zero_after_s", self.zero_after_s, LONGEST_WAIT_S, "s"),
             above("zero_window_s", self.zero_window_s, LONGEST_S, "s"),
             above("zero_time_s", self.zero_time_s, LONGEST_S, "s"),
             above("watchdog_s", self.watchdog_s, LONGEST_WATCHDOG_S, "s"),

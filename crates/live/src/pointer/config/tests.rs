@@ -49,6 +49,15 @@ fn all_faults_of_a_file_are_reported_with_their_lines() {
 }
 
 #[test]
+fn milliseconds_are_refused() {
+    for key in ["rise_time_s", "lock_s", "settle_s", "tap_max_s", "scroll_after_s", "zero_after_s"] {
+        let got = faults(&format!("{key} = 100\n"));
+        assert!(got.len() == 1 && got[0].contains(&format!("{key} = 100: choose")), "{got:?}");
+        assert!(got[0].ends_with("10 s"), "{got:?}");
+    }
+}
+
+#[test]
 fn text_that_is_no_toml_is_reported_with_its_line() {
     let got = faults("click_n = 2.0\nrelease_n 1.0\n");
     assert!(got.len() == 1 && got[0].starts_with("line 2: not TOML: "), "{got:?}");
