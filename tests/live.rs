@@ -113,6 +113,11 @@ fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
     dir.lunula(&all).expect(2).says("copy.csv: exists already").says("--replace");
     dir.lunula(&[&all[..], &["--replace", "-q"]].concat()).expect(0);
     dir.lunula(&["train", "copy.csv", "--target", "Fz_N", "--out", "again.json", "-q"]).expect(0);
+    // Nor is its certificate, by a table of another format.
+    let parquet = ["record", "--source", "r.csv", "--out", "copy.parquet"];
+    dir.lunula(&parquet).expect(2).says("copy.stream.json: exists already");
+    let named = ["record", "--source", "phantom:contacts?seconds=1&rate=max", "--names", "a,b", "--out", "ab.csv"];
+    dir.lunula(&named).expect(2).says("its columns have names of their own; leave --names out");
     let report = dir.parsed("copy.stream.json");
     assert_eq!(
         (&report["rows"], &report["sources"][0]["lost"], &report["sources"][0]["spoilt"]),

@@ -5,6 +5,7 @@
 //! in any unit: a model that learnt from such a recording fits it well, and ever after answers with the wrong sign or
 //! unit.
 
+use super::leaps::{self, leaps};
 use super::lines::order::{median_step_s, short};
 use super::naming::columns::photodiodes_not_read;
 use super::naming::role::Role;
@@ -14,8 +15,8 @@ use crate::median::median_of;
 
 /// Below so many samples nothing is said of values.
 const SAMPLES: usize = 50;
-/// Rows of a sensor are no further apart, seconds (assumed).
-const APART_S: f64 = 1.0;
+/// Rows of a sensor are nearer together, seconds (assumed): milliseconds of 1 and 2 kHz that are called seconds.
+const APART_S: f64 = 0.5;
 /// Nor nearer together, where all of them are within so many seconds (assumed): minutes that are called seconds.
 const NEAR_S: [[f64; 2]; 2] = [[9e-4, 15.0], [2e-3, 3.0]];
 /// Where a finger hardly presses, newtons, in so many rows, it is not sheared by more than this (assumed).
@@ -67,7 +68,7 @@ const PULLS: f64 = 0.25;
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
     let apart = || {
-        let step_s = median_step_s(time_s).filter(|step_s| *step_s > APART_S)?;
+        let step_s = median_step_s(time_s).filter(|step_s| *step_s >= APART_S)?;
         Some(format!(
             "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what \
              they are in",
@@ -156,9 +157,14 @@ pub(crate) fn alternating<'a>(photodiodes: impl Iterator<Item = (&'a str, &'a [f
     })
 }
 
-/// Values of a few rows that lie far beyond all others.
+/// Rows that leap and come back, and values of a few rows that lie far beyond all others.
 pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
+    let mut leaping = Vec::new();
     let of = |(name, values): (&str, &[f64])| {
+        if let Some(leaps) = leaps(name, values) {
+            leaping.push(leaps);
+            return None;
+        }
         let [least, greatest] = without_spikes(values);
         let range = greatest - least;
         let beyond = |value: f64| (least - value).max(value - greatest);
@@ -182,7 +188,8 @@ pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) 
             )
         })
     };
-    columns.filter_map(of).collect()
+    let alone: Vec<String> = columns.filter_map(of).collect();
+    leaps::leaping(&leaping).into_iter().chain(alone).collect()
 }
 
 /// What to say of a column that stays at an end of its range, but for 0, at which a finger rests.
@@ -355,7 +362,8 @@ mod tests {
     fn milliseconds_that_are_called_seconds_are_doubted() {
         let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
         assert!(every(10.0, 50).is_some_and(|said| said.starts_with("rows are 10 s apart")), "{:?}", every(10.0, 50));
-        assert_eq!([every(1.0, 400), every(10.0, 1), time(&[])], [None, None, None]);
+        assert!([1.0, 0.5].iter().all(|step_s| every(*step_s, 400).is_some()), "1 and 2 kHz in milliseconds");
+        assert_eq!([every(0.4, 400), every(10.0, 1), time(&[])], [None, None, None]);
         let stamped = |every: usize, step_s: f64| {
             time(&(0..400).map(|k| step_s * (k / every) as f64).collect::<Vec<_>>()).unwrap_or_default()
         };

@@ -22,6 +22,7 @@ mod ambient;
 pub(crate) mod doubts;
 mod foreseen;
 mod formats;
+mod leaps;
 mod lines;
 mod naming;
 mod reading;

@@ -4,7 +4,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use lunula_predictor::{Criterion, LayoutProblem};
+use lunula_predictor::{Candidate, Criterion, LayoutProblem};
 use rayon::prelude::*;
 
 use super::plan::steps;
@@ -106,6 +106,7 @@ pub fn run(
             chosen.k, best.choice.cost
         ));
     }
+    warnings.extend(best.and_then(|best| crowded(&given, &best.choice.places, options)));
     let of_thesis = thesis.map(|(eight, _)| eight).unwrap_or_default();
     let figures = LayoutFigures {
         folder: folder.clone(),
@@ -153,6 +154,21 @@ pub fn run(
         }
     }
     Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
+}
+
+/// What to say of chosen places that are nearer to each other than `--apart`: kept ones and their mirror images.
+fn crowded(given: &Given, chosen: &[usize], options: &LayoutOptions) -> Option<String> {
+    let places: Vec<Candidate> = chosen.iter().map(|&place| given.places[place].candidate(options)).collect();
+    let pairs = places.iter().enumerate().flat_map(|(k, one)| places[..k].iter().map(move |other| (other, one)));
+    let distances = pairs.map(|(a, b)| (a, b, (a.across_mm - b.across_mm).hypot(a.along_mm - b.along_mm)));
+    let (a, b, mm) = distances.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    (mm < options.apart * (1.0 - 1e-9)).then(|| {
+        format!(
+            "{} and {} are {mm:.2} mm apart, and --apart is {} mm: places that --keep names, and their mirror images, \
+             stay where they are; name others, where photodiodes have to fit beside each other",
+            a.name, b.name, options.apart
+        )
+    })
 }
 
 /// What reading said, and which candidates it left out.

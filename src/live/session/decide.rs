@@ -250,7 +250,7 @@ impl Answers {
             switch.sample(row, values, answer.outside, ahead_s, outputs.events.as_mut())?;
         }
         if let Some(pointer) = &mut self.pointer {
-            pointer.sample(row.time_s, values, answer.contact)?;
+            pointer.sample(row.time_s, values, answer)?;
         }
         self.text.clear();
         self.sensor.answering.push_row(&mut self.text, time_s, values, answer.contact);

@@ -32,6 +32,11 @@ pub(super) fn open_stream(
         columns: options.names.clone(),
         host_start_unix_s: since_1970.map(|since| since.as_secs_f64() - 1e-9 * now_ns as f64),
     };
+    let is_table = matches!(&source.place, Place::File { path, .. } if is_parquet(path) || is_xdf(path));
+    if options.names.is_some() && (is_table || matches!(source.place, Place::Phantom { .. })) {
+        let what = "its columns have names of their own; leave --names out".to_owned();
+        return Err(LiveError::Source { place: source.to_string(), what });
+    }
     match &source.place {
         Place::File { path, pace, looped } if is_parquet(path) || is_xdf(path) => {
             let rows = if is_xdf(path) { TableRows::of_xdf(path, &options.log)? } else { TableRows::read(path)? };

@@ -179,6 +179,14 @@ fn check_places(all: &[Finger<'_>], files: &SessionFiles) -> Result<(), LiveErro
         results.extend(all.iter().map(|finger| of_finger(out, finger.name.as_deref())));
     }
     Places::not_over(inputs).check(results)?;
+    // Tables of two formats have one certificate.
+    if let Some(out) = files.out.as_ref().filter(|_| !files.replace)
+        && ["csv", "parquet"].iter().any(|ending| out.with_extension(ending).exists())
+        && beside(out, REPORT).exists()
+        && !out.exists()
+    {
+        return Err(LiveError::Exists(beside(out, REPORT)));
+    }
     // Pipes and devices keep nothing. Recordings look for themselves.
     match events.into_iter().find(|events| !files.replace && events.is_file()) {
         Some(events) => Err(LiveError::Exists(events.clone())),

@@ -54,6 +54,8 @@ pub(crate) struct Answer {
     pub(crate) contact: Option<Contact>,
     /// Whether the voltages lie beyond those that a model was trained on.
     pub(crate) outside: bool,
+    /// So far that nothing is to be done by the answer.
+    pub(crate) is_far_outside: bool,
 }
 
 impl Sensor {
@@ -162,6 +164,7 @@ impl Sensor {
         self.lit += 1;
         self.not_known += u64::from(!self.answer.iter().all(|value| value.is_finite()));
         self.without += u64::from(!self.answer.iter().any(|value| value.is_finite()));
-        Some(Answer { contact, outside: self.answering.outside() > before })
+        let is_far_outside = self.answering.is_far_outside();
+        Some(Answer { contact, outside: self.answering.outside() > before, is_far_outside })
     }
 }

@@ -8,11 +8,13 @@
 //! Departure from the thesis, which takes the sample before: that one is half a period of the LED late. [`unlit`]
 //! interpolates the ambient light at the lit sample's own time. Of a stream, whose samples after are not known yet,
 //! [`preceding`] takes the sample before. [`rails`] finds samples at the end of the recorded range, in lit samples and
-//! in the unlit ones that went into a row; [`dead`] channels that show nothing.
+//! in the unlit ones that went into a row; [`dead`] channels that show nothing; [`edges`] rows beside a switch of the
+//! LED that are not what `led` says.
 //!
 //! Forces are not modulated and are taken as they stand in lit rows.
 
 mod dead;
+mod edges;
 mod preceding;
 mod rails;
 #[cfg(test)]
@@ -136,10 +138,12 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
         found.notes.push(PRECEDING_RULE.to_owned());
     }
     let mut shares = Vec::new();
+    let mut without = Vec::new();
     let photodiodes = log.photodiodes.iter().map(|channel| {
         let taken = |rows: &[usize]| -> Vec<f64> { rows.iter().map(|&row| channel.values[row]).collect() };
         let (raw, raw_dark) = (taken(&lit), taken(&dark));
         dead::warn(&channel.name, &time_s, &raw, &mut found.warnings);
+        without.push(Channel { name: format!("{} unlit", channel.name), values: raw_dark.clone() });
         if preceding && !dark.is_empty() {
             let values = found.less_preceding(channel, log, options.full_scale_v);
             return Channel { name: channel.name.clone(), values };
@@ -169,11 +173,12 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     // Dates have their unit.
     let time = if log.midnight_s.is_none() { doubts::time } else { doubts::blocks };
     found.warnings.extend(time(&log.time_s));
-    if log.led.is_none() {
-        found.warnings.extend(doubts::alternating(named(&photodiodes)));
+    match &log.led {
+        Some(led) => found.warnings.extend(edges::unsettled(led, &log.photodiodes)),
+        None => found.warnings.extend(doubts::alternating(named(&photodiodes))),
     }
     found.warnings.extend(doubts::forces(named(&forces)));
-    found.warnings.extend(doubts::glitches(named(&photodiodes).chain(named(&forces))));
+    found.warnings.extend(doubts::glitches(named(&photodiodes).chain(named(&without)).chain(named(&forces))));
     let faults = found.faults.iter().map(|faults| faults.words(photodiodes.len())).collect();
     Ok(Samples { time_s, photodiodes, forces, faults, warnings: found.warnings, notes: found.notes })
 }

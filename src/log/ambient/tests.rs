@@ -306,3 +306,41 @@ proptest! {
         }
     }
 }
+
+/// Ten phases of `each` rows on, as many off, at 1 kHz; in the first row of each, the light is `late` of the way back.
+fn phases(each: usize, late: f64, shifted: usize) -> Log {
+    let on = |k: usize| (k / each) % 2 == 1;
+    let level = |k: usize| if on(k) { 1.5 + 0.1 * (0.001 * k as f64).sin() } else { 0.5 };
+    let settling = |k: usize| {
+        let by = if k % each == 0 && k > 0 { late * (level(k - 1) - level(k)) } else { 0.0 };
+        level(k) + by + 0.002 * ((k * 7919) % 13) as f64 / 13.0
+    };
+    let rows = 40 * each;
+    let led = (0..rows).map(|k| on(k.saturating_sub(shifted))).collect();
+    log(
+        (0..rows).map(|k| 0.001 * k as f64).collect(),
+        Some(led),
+        vec![channel("P1", (0..rows).map(settling).collect())],
+    )
+}
+
+#[test]
+fn rows_beside_a_switch_of_the_led_are_what_it_says() {
+    for each in [3, 5, 10] {
+        is_noted(&all(&phases(each, 0.0, 1)), "at the level of the unlit ones: is `led` a row late");
+        is_noted(&all(&phases(each, 0.2, 0)), "the first row of each time that the LED is");
+        assert!(!noted(&all(&phases(each, 0.0, 0)), "a row"), "{each}");
+        assert!(!noted(&all(&phases(each, 0.01, 0)), "a row"), "{each}");
+    }
+    // Of one and two rows nothing is known.
+    assert!(!noted(&all(&phases(2, 0.2, 0)), "at the level of"));
+}
+
+#[test]
+fn missing_values_that_are_written_as_numbers_are_seen_in_lit_and_in_unlit_rows() {
+    for (place, name) in [(1, "P1 leap"), (0, "P1 unlit leap")] {
+        let mut log = alternating(3000, |t| 0.5 + 0.05 * (0.3 * t).sin() + 0.001 * (70.0 * t).sin());
+        log.photodiodes[0].values.iter_mut().skip(200 + place).step_by(200).for_each(|value| *value = -1.0);
+        is_noted(&all(&log), name);
+    }
+}

@@ -94,7 +94,7 @@ mod tests {
         for (text, number) in [("1", 1.0), ("-2.5e-3", -2.5e-3), ("+.5", 0.5), ("5.", 5.0), ("-0", 0.0)] {
             assert_eq!(numbers.read(text.as_bytes()).unwrap(), number, "{text}");
         }
-        for text in ["", "nan", "NaN", "-nan", "NA", "n/a", "NULL"] {
+        for text in ["", "nan", "NaN", "-nan", "NA", "n/a", "NULL", "#NV", "#BEZUG!", "#NOM?", "1.#QNAN", "-1.#IND00"] {
             assert!(numbers.read(text.as_bytes()).unwrap().is_nan(), "{text}");
         }
         for text in ["x", "1 V", "1,5", "inf", "-Infinity", "1e999", "0x1f", "--", "1.2.3"] {

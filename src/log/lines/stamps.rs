@@ -2,15 +2,17 @@
 //!
 //! - numbers: `0.04`, `1634808058216` (with a unit);
 //! - ISO 8601 and what is near it: `2021-10-21 09:20:58.216642589+00:00`, `2021-10-21T09:20:58Z`,
-//!   `2021/10/21 09:20:58`, `21.10.2021 09:20:58,216`; with or without a zone, down to nanoseconds. `10/21/2021` is
-//!   refused: nobody can tell which is the month in `10/11/2021`;
-//! - times of day: `09:20:58.216`; one that lies nearer to the last stamp on another day is taken to be on that day, so
+//!   `2021/10/21 09:20:58`, `21.10.2021 09:20:58,216`; with or without a zone, down to nanoseconds;
+//! - as American and MATLAB's programs write them: `10/21/2021 9:20:58.216 AM`, `21-Oct-2021 09:20:58`. Where the first
+//!   is `10/11/2021`, nobody can tell which is the month, and it is refused;
+//! - times of day: `09:20:58.216`, `9:20:58 AM`; one that lies nearer to the last stamp on another day is taken to be on that day, so
 //!   that time goes on over midnight.
 //!
 //! Out: seconds, and the midnight of the wall clock before the first stamp. The first stamp says which kind they all
 //! are.
 
-use jiff::civil::{Date, Time};
+use jiff::civil::{Date, DateTime, Time};
+use jiff::fmt::strtime::BrokenDownTime;
 use jiff::fmt::temporal::Pieces;
 use jiff::tz::Offset;
 use lunula_live::wire::is_missing;
@@ -90,6 +92,8 @@ pub(in crate::log) struct Stamps {
     last_s: Option<f64>,
     midnight_s: Option<f64>,
     passed_midnight: bool,
+    /// Of `10/21/2021`, as the first date says.
+    day_first: Option<bool>,
 }
 
 impl Stamps {
@@ -103,8 +107,10 @@ impl Stamps {
             return Ok(());
         }
         if self.kind == Some(Kind::Numbers) {
-            let number =
-                numbers.read(cell).map_err(|why| if date_or_time(cell).is_ok() { self.other(cell) } else { why })?;
+            let number = numbers.read(cell).map_err(|why| match date_or_time(cell, &mut None) {
+                Ok(_) => self.other(cell),
+                Err(_) => why,
+            })?;
             self.time.push(number);
             return Ok(());
         }
@@ -115,7 +121,7 @@ impl Stamps {
             self.time.push(number);
             return Ok(());
         }
-        let moment = date_or_time(cell)?;
+        let moment = date_or_time(cell, &mut self.day_first)?;
         if *self.kind.get_or_insert(moment.kind) != moment.kind {
             return Err(self.other(cell));
         }
@@ -191,28 +197,62 @@ struct Moment {
     midnight_s: f64,
 }
 
-fn date_or_time(cell: &[u8]) -> Result<Moment, String> {
+fn date_or_time(cell: &[u8], day_first: &mut Option<bool>) -> Result<Moment, String> {
     let text = std::str::from_utf8(cell).map_err(|_| unknown(cell))?;
-    if let Some(time_s) = time_of_day(text) {
+    if let Some(time_s) = time_of_day(text).or_else(|| half_day(text)) {
         return Ok(Moment { kind: Kind::TimesOfDay, time_s, midnight_s: 0.0 });
     }
     let mut iso = [0; 48];
-    let pieces = Pieces::parse(as_iso(text, &mut iso).unwrap_or(text)).map_err(|_| {
-        let slashes = text.bytes().take(6).filter(|&b| b == b'/').count() == 2;
-        let help = if slashes { "; day and month can't be told apart" } else { "" };
-        unknown(cell) + help
-    })?;
-    let Some(time) = pieces.time() else { return Err(unknown(cell)) };
-    let offset = pieces.to_numeric_offset();
+    let pieces = Pieces::parse(as_iso(text, &mut iso).unwrap_or(text)).ok();
+    let (date, time, offset) = match &pieces {
+        Some(pieces) => (pieces.date(), pieces.time().ok_or_else(|| unknown(cell))?, pieces.to_numeric_offset()),
+        None => {
+            let other = other_date(text, day_first).map_err(|help| unknown(cell) + help)?;
+            (other.date(), other.time(), None)
+        }
+    };
     let seconds = |date: Date, time: Time| {
         let stamp = offset.unwrap_or(Offset::UTC).to_timestamp(date.to_datetime(time)).map_err(|_| unknown(cell))?;
         Ok::<_, String>(stamp.as_second() as f64 + f64::from(stamp.subsec_nanosecond()) / 1e9)
     };
     Ok(Moment {
         kind: Kind::Dates { zoned: offset.is_some() },
-        time_s: seconds(pieces.date(), time)?,
-        midnight_s: seconds(pieces.date(), Time::midnight())?,
+        time_s: seconds(date, time)?,
+        midnight_s: seconds(date, Time::midnight())?,
     })
+}
+
+/// The seconds of `9:20:58.216 PM`.
+fn half_day(text: &str) -> Option<f64> {
+    let time = BrokenDownTime::parse("%I:%M:%S%.f %p", text).ok()?.to_time().ok()?;
+    Some(time.duration_since(Time::midnight()).as_secs_f64())
+}
+
+/// `21-Oct-2021 ..`, and `10/21/2021 ..` in the order of day and month that a file's first date shows.
+///
+/// # Errors
+/// What to add to the words that it is none.
+fn other_date(text: &str, day_first: &mut Option<bool>) -> Result<DateTime, &'static str> {
+    const MATLAB: [&str; 2] = ["%d-%b-%Y %H:%M:%S%.f", "%d-%b-%Y %I:%M:%S%.f %p"];
+    const DAY_FIRST: [&str; 2] = ["%d/%m/%Y %H:%M:%S%.f", "%d/%m/%Y %I:%M:%S%.f %p"];
+    const MONTH_FIRST: [&str; 2] = ["%m/%d/%Y %H:%M:%S%.f", "%m/%d/%Y %I:%M:%S%.f %p"];
+    let of = |formats: [&str; 2]| {
+        formats.iter().find_map(|format| BrokenDownTime::parse(format, text).ok()?.to_datetime().ok())
+    };
+    match (*day_first, of(DAY_FIRST), of(MONTH_FIRST)) {
+        (None, Some(day), Some(month)) if day != month => Err("; day and month can't be told apart"),
+        (None | Some(true), Some(date), None) | (Some(true), Some(date), Some(_)) => {
+            *day_first = Some(true);
+            Ok(date)
+        }
+        (None | Some(false), None, Some(date)) | (Some(false), Some(_), Some(date)) => {
+            *day_first = Some(false);
+            Ok(date)
+        }
+        (None, Some(date), Some(_)) => Ok(date),
+        (Some(_), ..) if text.contains('/') => Err("; its day and month are the other way round than in the first row"),
+        _ => of(MATLAB).ok_or(""),
+    }
 }
 
 fn unknown(cell: &[u8]) -> String {
@@ -290,6 +330,9 @@ mod tests {
             ("2021/10/21 09:20:58,216642589", at, 1_634_774_400.0),
             ("21.10.2021 09:20:58.216642589", at, 1_634_774_400.0),
             ("1970-01-02 20:18:58.629079887", 159_538.629_079_887, 86_400.0),
+            ("10/21/2021 9:20:58.216642589 AM", at, 1_634_774_400.0),
+            ("21/10/2021 09:20:58.216642589", at, 1_634_774_400.0),
+            ("21-Oct-2021 09:20:58.216642589", at, 1_634_774_400.0),
         ] {
             let (time, midnight, notes) = seconds(&[text], None);
             assert!((time[0] - time_s).abs() <= STEP_S, "{text}: {}", time[0]);
@@ -304,6 +347,16 @@ mod tests {
         assert_eq!((time[2], midnight, notes), (86_400.0, Some(0.0), 1));
         assert!((time[3] - 86_399.95).abs() <= 1e-9 && (time[4] - 86_400.1).abs() <= 1e-9);
         assert_eq!(seconds(&["00:00:01", "00:00:00"], None).0, [1.0, 0.0]);
+        assert_eq!(seconds(&["11:59:59.5 AM", "12:00:00 PM", "1:00:01 PM"], None).0, [43_199.5, 43_200.0, 46_801.0]);
+    }
+
+    #[test]
+    fn the_first_date_says_which_is_the_month() {
+        let days = |cells: &[&str]| seconds(cells, None).0.iter().map(|s| s / DAY_S).collect::<Vec<f64>>();
+        assert_eq!(days(&["1/31/1970 00:00:00", "2/1/1970 00:00:00"]), [30.0, 31.0]);
+        assert_eq!(days(&["31/1/1970 00:00:00", "1/2/1970 00:00:00"]), [30.0, 31.0]);
+        assert_eq!(days(&["1/1/1970 00:00:00"]), [0.0], "the same either way");
+        assert!(read(&["1/31/1970 00:00:00", "31/1/1970 00:00:00"]).unwrap_err().contains("the other way round"));
     }
 
     #[test]
@@ -326,7 +379,8 @@ mod tests {
     #[test]
     fn other_stamps_are_refused_in_words() {
         for (cells, words) in [
-            (&["10/21/2021 09:20:58"][..], "can't be told apart"),
+            (&["10/11/2021 09:20:58"][..], "can't be told apart"),
+            (&["31/31/2021 09:20:58"], "no time stamp"),
             (&["yesterday"], "no time stamp"),
             (&["2021-10-21"], "no time stamp"),
             (&["2021-02-30 00:00:00"], "no time stamp"),

@@ -249,7 +249,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     }
     let rows = time_s.len();
     if rows == 0 {
-        return Err(DataError::NoRows(why_none(&files)));
+        return Err(DataError::NoRows(why_none(&files, &sources, &wanted.targets)));
     }
     let shaped = |values: Vec<f64>| {
         let columns = values.len() / rows;
@@ -337,7 +337,7 @@ fn twice(data: &Dataset) -> Vec<String> {
 }
 
 /// Why no row is left.
-fn why_none(files: &[FileRows]) -> String {
+fn why_none(files: &[FileRows], sources: &[Source], targets: &[String]) -> String {
     let sum = |of: fn(&FileRows) -> usize| files.iter().map(of).sum::<usize>();
     let all = sum(|f| f.rows);
     let names = files.iter().map(|f| f.path.display().to_string()).collect::<Vec<_>>().join(", ");
@@ -350,5 +350,14 @@ fn why_none(files: &[FileRows]) -> String {
         (sum(|f| f.faults), "are saturated or without ambient light (sensor_status; --keep-faults keeps them)"),
     ];
     let counts: Vec<String> = reasons.iter().filter(|(n, _)| *n > 0).map(|(n, why)| format!("{n} {why}")).collect();
-    format!("{names}: of {all} rows {}", counts.join(", "))
+    let mut empty = vec![0; sources[0].inputs.len() + targets.len()];
+    for source in sources {
+        empty.iter_mut().zip(source.empty_cells()).for_each(|(sum, rows)| *sum += rows);
+    }
+    let named = sources[0].inputs.iter().chain(targets).zip(&empty).filter(|(_, rows)| **rows > 0);
+    let columns: Vec<String> = named.map(|(name, rows)| format!("{name} in {rows}")).collect();
+    let columns = if columns.is_empty() { String::new() } else { format!("; empty are {}", columns.join(", ")) };
+    let is_apart = sum(|f| f.empty) > 0 && empty.iter().all(|rows| *rows < all);
+    let apart = if is_apart { "; no row has all: write them at the same times, interpolated" } else { "" };
+    format!("{names}: of {all} rows {}{columns}{apart}", counts.join(", "))
 }

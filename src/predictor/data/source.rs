@@ -53,6 +53,11 @@ impl Source {
         inputs || self.y.iter().any(lacking)
     }
 
+    /// In how many rows each photodiode is empty, then each target.
+    pub(super) fn empty_cells(&self) -> impl Iterator<Item = usize> {
+        self.x.iter().chain(&self.y).map(|column| column.iter().filter(|value| value.is_nan()).count())
+    }
+
     fn of_table(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
         let table = Table::read(path)?;
         let names = table.names();

@@ -29,6 +29,8 @@ pub struct Answering {
     last_s: f64,
     /// Rows outside of what a model was trained on.
     outside: u64,
+    /// Whether the last row lay far outside.
+    is_far_outside: bool,
     /// The SD that models give of their own, a column each; NaN of those that give none.
     sds: Vec<f64>,
 }
@@ -105,7 +107,18 @@ impl Answering {
         let of = |voice: &Voice| voice.predictor.intervals().map_or_else(Vec::new, |found| found.half_width.clone());
         let half_widths = voices.iter().flat_map(of).collect();
         let sds = vec![f64::NAN; columns.len()];
-        Ok(Self { voices, inputs, columns, gate, intervals, half_widths, outside: 0, last_s: f64::NAN, sds })
+        Ok(Self {
+            voices,
+            inputs,
+            columns,
+            gate,
+            intervals,
+            half_widths,
+            outside: 0,
+            is_far_outside: false,
+            last_s: f64::NAN,
+            sds,
+        })
     }
 
     /// The photodiodes that a row holds, in order.
@@ -206,6 +219,12 @@ impl Answering {
         self.outside
     }
 
+    /// Whether the last row lay so far outside of what some model was trained on that nothing is to be done by it.
+    #[must_use]
+    pub fn is_far_outside(&self) -> bool {
+        self.is_far_outside
+    }
+
     /// Answers a row: `row` volts as [`inputs`](Self::inputs) (NaN where missing), `out` as [`columns`](Self::columns),
     /// NaN where not known; `begins` where a recording does. Nothing is allocated. Returns what the gate says, where
     /// there is one.
@@ -217,6 +236,7 @@ impl Answering {
             gated.state = GateState::default();
         }
         self.last_s = time_s;
+        self.is_far_outside = false;
         // Of models whose word counts, and of a posture model whose word counts only where the finger does not touch.
         let (mut outside, mut outside_bending) = (false, false);
         for voice in &mut self.voices {
@@ -240,6 +260,7 @@ impl Answering {
                 }
                 let posture_only = predictor.targets().len() == 1 && predictor.targets()[0].name == POSTURE;
                 *(if posture_only { &mut outside_bending } else { &mut outside }) |= predictor.is_outside(own);
+                self.is_far_outside |= predictor.is_far_outside(own);
             } else {
                 out.fill(f64::NAN);
             }

@@ -1,7 +1,9 @@
 //! Cells of text: bare of quotes, missing, names, with a decimal comma, and whether an LED was on.
 
-/// The words that say that a number is missing, without regard to case; those with `#` are a spreadsheet's.
-const MISSING: [&str; 9] = ["nan", "na", "n/a", "null", "#n/a", "#num!", "#value!", "#div/0!", "#ref!"];
+/// The words that say that a number is missing, without regard to case.
+const MISSING: [&str; 7] = ["nan", "na", "n/a", "null", "#n/a", "#nv", "#n/d"];
+/// What Windows' C library writes for it, as `-1.#IND` and `nan(ind)`.
+const NO_NUMBER: [&str; 4] = ["#ind", "#qnan", "#snan", "nan(ind)"];
 
 /// A cell without space and double quotes around it.
 #[must_use]
@@ -24,7 +26,14 @@ pub fn is_name(cell: &str) -> bool {
 /// Whether a cell is empty or says that nothing is known.
 #[must_use]
 pub fn is_missing(cell: &[u8]) -> bool {
-    cell.is_empty() || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word.as_bytes()))
+    let is = |word: &&str, of: &[u8]| of.eq_ignore_ascii_case(word.as_bytes());
+    let is_no_number = |word: &&str| cell.windows(word.len()).any(|part| is(word, part));
+    cell.is_empty()
+        || MISSING.iter().any(|word| is(word, cell))
+        // A spreadsheet's error, in any language: `#VALUE!`, `#BEZUG!`, `#NOM?`.
+        || cell.starts_with(b"#") && cell.ends_with(b"!")
+        || cell.starts_with(b"#") && cell.ends_with(b"?")
+        || NO_NUMBER.iter().any(is_no_number)
 }
 
 /// Whether the LED was on; none where it is missing.

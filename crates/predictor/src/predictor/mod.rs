@@ -249,8 +249,25 @@ impl Predictor {
         match &self.model {
             // Noise takes some cell of nearly every picture out of its range.
             Model::Eigennails(model) => model.is_outside(x),
-            _ => self.inputs.iter().zip(x).any(|(channel, x)| *x < channel.low || *x > channel.high),
+            _ => self.is_beyond(x, 0.0),
         }
+    }
+
+    /// Whether it lies so far outside that no answer is to be acted on: a voltage more than a tenth of its range beyond,
+    /// as where a cable is loose.
+    #[must_use]
+    pub fn is_far_outside(&self, x: &[f64]) -> bool {
+        match &self.model {
+            Model::Eigennails(model) => model.is_outside(x),
+            _ => self.is_beyond(x, 0.1),
+        }
+    }
+
+    fn is_beyond(&self, x: &[f64], share: f64) -> bool {
+        self.inputs.iter().zip(x).any(|(channel, x)| {
+            let most = share * (channel.high - channel.low);
+            *x < channel.low - most || *x > channel.high + most
+        })
     }
 }
 

@@ -202,7 +202,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             let doubt = |name: &&str| {
                 let values = read.get(name).unwrap_or_default();
                 match columns.between {
-                    Between::Straight => doubts::held(name, times_s, values),
+                    Between::Straight => doubts::held(name, times_s, values).or_else(|| signs::steps(name, values)),
                     Between::Held => signs::moves(name, values),
                 }
             };

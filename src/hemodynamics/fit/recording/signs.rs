@@ -53,6 +53,19 @@ pub(super) fn moves(name: &str, values: &[f64]) -> Option<String> {
     })
 }
 
+/// What to say of a load that steps, and is taken to go straight from row to row: of a prescribed one every change
+/// stands between rows that stay, and a measured one has rows on its way, and noise.
+pub(super) fn steps(name: &str, values: &[f64]) -> Option<String> {
+    let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+    (runs.len() > 1 && runs.iter().all(|run| run.len() > 1)).then(|| {
+        format!(
+            "{name} steps from one row to the next, {} time(s), and is taken to go straight between the two: say \
+             --between held, and --unloaded-before where its first row is already a step up from 0",
+            runs.len() - 1
+        )
+    })
+}
+
 /// What to say of pressures, Pa.
 pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
     let ranges = columns.map(|(_, pressures_pa)| without_spikes(pressures_pa));
@@ -112,6 +125,18 @@ mod tests {
             [&presses(3000.0, 300), &vec![3000.0; 300], &Vec::new()].map(|load| moves("pf1_Pa", load)),
             [(); 3].map(|()| None)
         );
+    }
+
+    #[test]
+    fn a_load_that_steps_does_not_go_straight() {
+        let step = [vec![5000.0; 100], vec![0.0; 100]].concat();
+        let said = steps("pf1_Pa", &step).expect("a step");
+        assert!(said.starts_with("pf1_Pa steps from one row to the next, 1 time(s)"), "{said}");
+        let ramp: Vec<f64> = (0..200).map(|k| f64::from(k.clamp(50, 150))).collect();
+        let noisy: Vec<f64> = step.iter().enumerate().map(|(k, pa)| pa + (k % 3) as f64).collect();
+        for load in [&ramp, &noisy, &vec![5000.0; 100], &Vec::new()] {
+            assert_eq!(steps("pf1_Pa", load), None);
+        }
     }
 
     #[test]

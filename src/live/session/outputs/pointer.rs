@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::events::EventsFile;
 use crate::live::error::LiveError;
 use crate::live::options::MouseFiles;
+use crate::live::session::sensor::Answer;
 use crate::predictor::POSTURE;
 
 /// A pointer and where its events go.
@@ -85,15 +86,16 @@ impl PointerOutput {
         self.pointer.due_s()
     }
 
-    /// An answer.
+    /// What was answered to a row.
     ///
     /// # Errors
     /// Events that can't be written.
-    pub(crate) fn sample(&mut self, t_s: f64, answer: &[f64], contact: Option<Contact>) -> Result<(), LiveError> {
-        let [fx, fy, fz] = self.forces.map(|k| answer[k]);
+    pub(crate) fn sample(&mut self, t_s: f64, values: &[f64], answer: Answer) -> Result<(), LiveError> {
+        let [fx, fy, fz] = self.forces.map(|k| values[k]);
         // Under a gate the angle of a touching finger is no prediction.
-        let bend = self.bend.map(|k| answer[k]).filter(|deg| deg.is_finite() && contact != Some(Contact::Touch));
-        let valid = [fx, fy, fz].iter().all(|force| force.is_finite());
+        let bend = self.bend.map(|k| values[k]);
+        let bend = bend.filter(|deg| deg.is_finite() && answer.contact != Some(Contact::Touch));
+        let valid = !answer.is_far_outside && [fx, fy, fz].iter().all(|force| force.is_finite());
         self.with(|pointer, out| pointer.sample(t_s, fx, fy, fz, bend, valid, out))
     }
 

@@ -89,7 +89,7 @@ pub fn evaluate(
     let own: Vec<usize> = (0..predictor.inputs().len()).collect();
     read.data = read.data.only_inputs(&own);
     warnings.extend(read.warnings.iter().cloned());
-    warnings.extend(seen_in_training(&predictor, &read.data));
+    let flattered = seen_in_training(&predictor, &read.data);
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
     warnings.extend(not_predicted(&predictor, &values)?);
     warnings.extend(doubts(&predictor, &read.data, &seen, &values));
@@ -106,6 +106,13 @@ pub fn evaluate(
     watch.go_on()?;
     let held_out = held_out.transpose()?;
     let mut notes: Vec<String> = read.notes().chain(seen_by_intervals(&predictor, &read.data)).collect();
+    // To hold parts out, all recordings are named.
+    if options.by.is_some() && !flattered.is_empty() {
+        notes
+            .push("the model's own errors are of what it was trained on, and flatter; those held out don't".to_owned());
+    } else {
+        warnings.extend(flattered);
+    }
     let splits = match options.splits {
         None => None,
         Some(ways) => Some(stages.time("splits", || {

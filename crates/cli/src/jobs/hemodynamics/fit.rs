@@ -108,15 +108,17 @@ fn say(common: &Common, report: &FitReport) {
             ));
         }
     }
+    // Of a photodiode that hardly sees the model a scaling has hundreds of digits.
+    let volts = |value: f64| if value.abs() < 1e6 { fixed(value, 5) } else { format!("{value:.5e}") };
     for one in &report.photodiodes {
         let plus = |error: Option<f64>| error.map_or("not determined".to_owned(), |error| format!("+- {error:.4} V"));
         common.say(&format!(
-            "  unit {}{}: offset {} V {}, scaling {:.5} V {}; {}",
+            "  unit {}{}: offset {} V {}, scaling {} V {}; {}",
             one.unit,
             if one.subjects.is_empty() { String::new() } else { format!(" of {}", one.subjects.join(", ")) },
-            fixed(one.offset_v, 5),
+            volts(one.offset_v),
             plus(one.offset_standard_error_v),
-            one.scaling_v,
+            volts(one.scaling_v),
             plus(one.scaling_standard_error_v),
             one.recordings.join(", ")
         ));

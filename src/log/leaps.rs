@@ -1,0 +1,109 @@
+//! Columns that leap in single rows and come back: missing values that are written as numbers (0, -1, -999), glitches.
+//!
+//! In: columns of a recording. Out: what to say where so many rows do it that they can't be a slip.
+//!
+//! Measured: 0 in every 101st row of a phantom's photodiodes took Fy of a model from 0.14 to 0.40 N, 0 in every 60th
+//! row of a force `peak_rise` of `skill` from 3 to 107 N/s. Of 24 phantom logs (touch, bending, random; 13 channels
+//! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step.
+
+use super::lines::order::short;
+use super::rest::without_spikes;
+
+/// So many rows make a fault; fewer are named as [glitches](super::doubts::glitches).
+const ROWS: usize = 4;
+/// A leap is so many times as long as 90 of 100 steps that are any, and has this share of the range; where it comes
+/// back to, it has left, within this share of the leap.
+const STEPS: f64 = 8.0;
+const RANGE: f64 = 0.1;
+const BACK: f64 = 0.2;
+/// Below so many steps nothing is said.
+const LEAST_STEPS: usize = 50;
+
+/// What a column does in single rows.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Leaps {
+    pub(super) name: String,
+    rows: usize,
+    /// Where most of them leap to exactly.
+    to: f64,
+    there: usize,
+}
+
+/// The leaps of a column, where there are so many.
+pub(super) fn leaps(name: &str, values: &[f64]) -> Option<Leaps> {
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let mut steps: Vec<f64> = steps.filter(|step| step.is_finite() && *step > 0.0).collect();
+    if steps.len() < LEAST_STEPS {
+        return None;
+    }
+    let at = 9 * steps.len() / 10;
+    let usual = *steps.select_nth_unstable_by(at, f64::total_cmp).1;
+    let [least, greatest] = without_spikes(values);
+    let far = (STEPS * usual).max(RANGE * (greatest - least));
+    let leaps = |row: &[f64]| {
+        let leap = (row[1] - row[0]).abs().min((row[1] - row[2]).abs());
+        leap > far && (row[2] - row[0]).abs() < BACK * leap
+    };
+    let mut alone: Vec<f64> = values.windows(3).filter(|row| leaps(row)).map(|row| row[1] + 0.0).collect();
+    alone.sort_unstable_by(f64::total_cmp);
+    let alike = alone.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len())?;
+    let found = Leaps { name: name.to_owned(), rows: alone.len(), to: alike[0], there: alike.len() };
+    (found.rows >= ROWS).then_some(found)
+}
+
+/// What to say of the columns that do.
+pub(super) fn leaping(columns: &[Leaps]) -> Option<String> {
+    let most = columns.iter().max_by_key(|one| one.rows)?;
+    let names: Vec<&str> = columns.iter().map(|one| one.name.as_str()).collect();
+    let to = match most.there {
+        there if 2 * there > most.rows => format!("in {there} of them to exactly {}", short(most.to)),
+        _ => format!("one of them to {}", short(most.to)),
+    };
+    Some(format!(
+        "{} leap for a single row and come back, {} in {} rows, {to}: are missing values written as numbers, or are \
+         they glitches? Leave such cells empty: what learns from them, or counts with them, is wrong by far more than \
+         their share",
+        names.join(", "),
+        most.name,
+        most.rows
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A photodiode of a finger that presses and lets go, in steps of a converter.
+    fn volts(k: usize) -> f64 {
+        let noise = ((k * 7919 + 31) * (k + 17) % 2003) as f64 / 2003.0 - 0.5;
+        let press = (2.0 * (0.02 * k as f64).sin()).clamp(-1.0, 1.0);
+        ((2.7 + 0.2 * press + 0.004 * noise) * 1000.0).round() / 1000.0
+    }
+
+    fn said(of: impl Fn(usize) -> f64) -> Option<String> {
+        let values: Vec<f64> = (0..3000).map(of).collect();
+        leaping(&leaps("P1", &values).into_iter().collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn codes_for_missing_values_and_glitches_are_seen_however_many_they_are() {
+        for (code, every) in [(0.0, 600), (-1.0, 100), (-999.0, 40), (4.095, 25)] {
+            let found = said(|k| if k % every == 7 { code } else { volts(k) }).unwrap_or_default();
+            let rows = 3000 / every;
+            let words = format!("P1 in {rows} rows, in {rows} of them to exactly {code}: are missing");
+            assert!(found.contains(&words), "{found}");
+        }
+        let glitches = said(|k| if k % 300 == 7 { 1.0 + 0.1 * (k / 300) as f64 } else { volts(k) });
+        assert!(glitches.is_some_and(|said| said.contains("P1 in 10 rows, one of them to ")));
+    }
+
+    #[test]
+    fn fingers_steps_and_a_last_digit_that_flickers_are_not() {
+        assert_eq!(said(volts), None);
+        assert_eq!(said(|k| if k % 1000 == 7 { 0.0 } else { volts(k) }), None, "three are named as glitches");
+        assert_eq!(said(|k| if k % 500 < 250 { 0.0 } else { -2.0 }), None, "steps");
+        assert_eq!(said(|k| 2.5 + 0.001 * f64::from(k % 40 == 0)), None, "one digit");
+        assert_eq!(said(|k| if k % 40 < 2 { 0.0 } else { volts(k) }), None, "two rows are no single one");
+        assert_eq!(said(|k| if k % 40 == 0 { f64::NAN } else { volts(k) }), None);
+    }
+}
