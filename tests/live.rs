@@ -737,6 +737,14 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
     let buttons: Vec<bool> =
         events.iter().filter(|one| one["event"] == "button").map(|one| one["down"].as_bool().unwrap()).collect();
     assert_eq!(buttons, [true, false]);
+    // A cable that is loose for a row clicks nothing, however hard the force that it makes.
+    let loose = |(k, line): (usize, &str)| match line.rsplit_once(',') {
+        Some((row, _)) if k % 40 == 7 => format!("{row},0\n"),
+        _ => format!("{line}\n"),
+    };
+    dir.write("loose.csv", dir.text("r.csv").lines().enumerate().map(loose).collect::<String>());
+    let report = dir.lunula(&["mouse", "--source", "loose.csv", "--model", "f.json", "--json"]).expect(0).json();
+    assert_eq!(report["pointer"]["clicks"], 1, "{report}");
     // What a person did can't be done again.
     let fast = dir.text("e.jsonl");
     mouse(&[]).expect(2).says("e.jsonl: exists already").says("--replace");

@@ -232,7 +232,7 @@ fn photodiodes_have_the_thesis_places_or_those_of_a_file() {
     assert_eq!(report.chosen.candidates, ["P1", "P7", "P2"]);
     assert!(report.warnings.iter().all(|said| !said.contains("--apart")), "{:?}", report.warnings);
     let report = folder.run(&["a.csv"], "k = '3'\nkeep = ['P1', 'P2']\napart = 5.0").unwrap();
-    assert!(report.warnings.iter().any(|said| said.contains("P1 and P2 are 2.64 mm apart")), "{:?}", report.warnings);
+    assert!(report.warnings.iter().any(|said| said.contains("P1 and P2 are 3.08 mm apart")), "{:?}", report.warnings);
     let report = folder.run(&["a.csv"], "k = '2'\nmirror = true").unwrap();
     assert_eq!(report.chosen.candidates, ["P7", "P5"]);
     let positions =

@@ -15,8 +15,9 @@ use crate::median::median_of;
 
 /// Below so many samples nothing is said of values.
 const SAMPLES: usize = 50;
-/// Rows of a sensor are nearer together, seconds (assumed): milliseconds of 1 and 2 kHz that are called seconds.
-const APART_S: f64 = 0.5;
+/// Rows of a sensor are nearer together, seconds (assumed), and so near where there are many: 1 and 2 kHz.
+const APART_S: f64 = 1.0;
+const MANY_APART_S: f64 = 0.5;
 /// Nor nearer together, where all of them are within so many seconds (assumed): minutes that are called seconds.
 const NEAR_S: [[f64; 2]; 2] = [[9e-4, 15.0], [2e-3, 3.0]];
 /// Where a finger hardly presses, newtons, in so many rows, it is not sheared by more than this (assumed).
@@ -68,7 +69,8 @@ const PULLS: f64 = 0.25;
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
     let apart = || {
-        let step_s = median_step_s(time_s).filter(|step_s| *step_s >= APART_S)?;
+        let step_s = median_step_s(time_s)
+            .filter(|step_s| *step_s > APART_S || *step_s >= MANY_APART_S && time_s.len() >= SAMPLES)?;
         Some(format!(
             "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what \
              they are in",
@@ -363,7 +365,7 @@ mod tests {
         let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
         assert!(every(10.0, 50).is_some_and(|said| said.starts_with("rows are 10 s apart")), "{:?}", every(10.0, 50));
         assert!([1.0, 0.5].iter().all(|step_s| every(*step_s, 400).is_some()), "1 and 2 kHz in milliseconds");
-        assert_eq!([every(0.4, 400), every(10.0, 1), time(&[])], [None, None, None]);
+        assert_eq!([every(0.4, 400), every(1.0, 20), every(10.0, 1), time(&[])], [const { None }; 4]);
         let stamped = |every: usize, step_s: f64| {
             time(&(0..400).map(|k| step_s * (k / every) as f64).collect::<Vec<_>>()).unwrap_or_default()
         };

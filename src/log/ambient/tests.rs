@@ -329,8 +329,8 @@ fn rows_beside_a_switch_of_the_led_are_what_it_says() {
     for each in [3, 5, 10] {
         is_noted(&all(&phases(each, 0.0, 1)), "at the level of the unlit ones: is `led` a row late");
         is_noted(&all(&phases(each, 0.2, 0)), "the first row of each time that the LED is");
-        assert!(!noted(&all(&phases(each, 0.0, 0)), "a row"), "{each}");
-        assert!(!noted(&all(&phases(each, 0.01, 0)), "a row"), "{each}");
+        assert!(!noted(&all(&phases(each, 0.0, 0)), "at the level of"), "{each}");
+        assert!(!noted(&all(&phases(each, 0.01, 0)), "at the level of"), "{each}");
     }
     // Of one and two rows nothing is known.
     assert!(!noted(&all(&phases(2, 0.2, 0)), "at the level of"));
