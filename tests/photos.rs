@@ -101,6 +101,10 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
     dir.lunula(&["photos", "merge", "first", "small", "--out", "merged"]).expect(2).says("made with");
     dir.lunula(&["photos", "merge", "set", "--out", "merged"]).expect(2).says("maps/<pose>.partial.npz");
     assert!(dir.bytes_of("merged") == merged);
+    // A part that the merge would replace.
+    let first = dir.bytes_of("first");
+    dir.words("photos merge first second --out ./first").expect(2).says("./first: is an input itself");
+    assert!(dir.bytes_of("first") == first);
 }
 
 #[test]

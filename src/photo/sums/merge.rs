@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::partial;
-use crate::files::Staging;
+use crate::files::{Places, Staging};
 use crate::input::copies;
 use crate::job::Watch;
 use crate::photo::error::MergeError;
@@ -13,12 +13,13 @@ use crate::photo::run::report::{PhotosReport, of_merge};
 use crate::stages::{Stages, Step};
 
 /// Joins the sums and the tables of nails of `parts` (folders that `lunula photos` wrote), and puts the results in
-/// `out`. Normalized pictures stay where they are.
+/// `out`, which is none of the parts. Normalized pictures stay where they are.
 ///
 /// # Errors
 /// [`MergeError`]; nothing is written then.
 pub fn merge(parts: &[PathBuf], out: &Path, watch: &Watch<'_>) -> Result<PhotosReport, MergeError> {
     let start = Instant::now();
+    Places::not_over(parts).check([out])?;
     let staging = Staging::new(out)?;
     let stages = Stages::default();
     let partials = stages.time("join", || partial::join(parts))?;
