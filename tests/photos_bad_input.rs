@@ -254,13 +254,15 @@ fn folders_of_people_and_folders_within_poses_are_named() {
 fn a_manifest_s_faults_are_named_by_line() {
     let dir = good_set();
     let rows = "a.png,a,p\nmissing.png,x,p\n,y,p\nb.png,b,p\nc.png,../up,p\nc.png,c,p\n";
-    dir.write("set/photos.csv", format!("file,subject,pose\n{rows}"));
-    dir.words("photos set --out out").expect(1).says_all(&[
-        "line 3: missing.png does not exist",
-        "line 4: the cell `file` is empty",
-        "line 6: `../up`",
-    ]);
-    assert_eq!(used(&dir), ["a", "b", "c"]);
+    for end in ["\n", "\r\n"] {
+        dir.write("set/photos.csv", format!("file,subject,pose\n{rows}").replace('\n', end));
+        dir.words("photos set --out out").expect(1).says_all(&[
+            "line 3: missing.png does not exist",
+            "line 4: the cell `file` is empty",
+            "line 6: `../up`",
+        ]);
+        assert_eq!(used(&dir), ["a", "b", "c"]);
+    }
     dir.write("set/photos.csv", "name;who\na.png;a\n");
     dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("it needs file,subject,pose");
     dir.write("set/photos.csv", "file,subject,pose\nmissing.png,x,p\n");

@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::input;
 use crate::photo::pose::sort_by_pose;
 use crate::photograph::{extension, is_picture};
-use crate::table::delimiter_of;
+use crate::table::{delimiter_of, line_of_row};
 use crate::words::shown;
 
 /// Photographs in formats that lunula does not read: said, not passed over.
@@ -250,11 +250,12 @@ impl PhotoSet {
             std::io::ErrorKind::InvalidData => wrong("is not UTF-8; save it as CSV in UTF-8".into()),
             _ => wrong(e.to_string()),
         })?;
+        let rows = text.trim_start_matches('\u{feff}').as_bytes();
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter_of(&text))
             .trim(csv::Trim::All)
             .flexible(true)
-            .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+            .from_reader(rows);
         let header = reader.headers().map_err(|e| wrong(e.to_string()))?.clone();
         let column = |name: &str| header.iter().position(|h| h == name);
         let (Some(file), Some(subject), Some(pose)) = (column("file"), column("subject"), column("pose")) else {
@@ -275,7 +276,8 @@ impl PhotoSet {
         let mut named: BTreeSet<PathBuf> = BTreeSet::new();
         for record in reader.records() {
             let record = record.map_err(|e| wrong(e.to_string()))?;
-            let place = format!("photos.csv, line {}", record.position().map_or(0, csv::Position::line));
+            let line = record.position().map_or(0, |position| line_of_row(rows, position));
+            let place = format!("photos.csv, line {line}");
             let cell = |at: usize| record.get(at).unwrap_or_default().to_owned();
             let (file, subject, pose) = (cell(file), cell(subject), cell(pose));
             named.insert(self.folder.join(&file));

@@ -23,6 +23,13 @@ pub(crate) fn delimiter_of(text: &str) -> u8 {
     DELIMITERS.into_iter().max_by_key(|&mark| bare.matches(char::from(mark)).count()).unwrap_or(b',')
 }
 
+/// The line of the row that the CSV reader finds from `position` of `text` on. The reader's own line is that of what is
+/// left of the row before, as the second half of its `\r\n`; empty lines may follow.
+pub(crate) fn line_of_row(text: &[u8], position: &csv::Position) -> u64 {
+    let skipped = text[position.byte() as usize..].iter().take_while(|b| matches!(b, b'\n' | b'\r'));
+    position.line() + skipped.filter(|&&b| b == b'\n').count() as u64
+}
+
 /// The rows of a CSV file, each with as many cells as there are names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct CsvCells {
@@ -161,10 +168,7 @@ impl CsvCells {
             Self { text: String::with_capacity(text.len()), columns: 0, rows: Vec::new(), ends: Vec::new() };
         let mut record = csv::StringRecord::new();
         loop {
-            // The reader's own line is that of what is left of the row before; empty lines may follow.
-            let position = reader.position();
-            let skipped = bytes[position.byte() as usize..].iter().take_while(|b| matches!(b, b'\n' | b'\r'));
-            let line = position.line() + skipped.filter(|&&b| b == b'\n').count() as u64;
+            let line = line_of_row(bytes, reader.position());
             if !reader.read_record(&mut record).map_err(|why| format!("line {line} can't be read ({why})"))? {
                 return Ok(cells);
             }

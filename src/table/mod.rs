@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::words::{Words, fixed};
 
-pub(crate) use cells::{DELIMITERS, delimiter_of};
+pub(crate) use cells::{DELIMITERS, delimiter_of, line_of_row};
 pub use read::{Cell, Table, column_names};
 
 /// Why a table can't be written or read.
