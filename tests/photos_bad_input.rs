@@ -236,6 +236,35 @@ fn photographs_that_may_be_of_another_pose_are_named() {
 }
 
 #[test]
+fn one_mask_for_two_poses_is_named_though_each_picture_has_its_own_axis() {
+    let dir = Dir::new();
+    let mask = |moved: f64| {
+        image::GrayImage::from_fn(160, 140, |x, y| {
+            let (u, v) = ((f64::from(x) - 80.0 - moved) / 30.0, (f64::from(y) - 70.0) / 40.0);
+            image::Luma([if u.powi(4) + v.powi(4) <= 1.0 { 255 } else { 0 }])
+        })
+    };
+    for (k, pose) in ["p", "q"].into_iter().enumerate() {
+        // A finger that the axis is found by, another one each time.
+        let shade = |x: u32| if x.abs_diff(80 + 3 * k as u32) < 36 { 1.0 } else { 0.3 };
+        let mut nail = shaded(1.0, k as u32);
+        nail.enumerate_pixels_mut().filter(|(_, y, _)| *y > 112).for_each(|(x, _, pixel)| {
+            pixel.0 = pixel.0.map(|level| (f64::from(level) * shade(x)) as u8);
+        });
+        nail.save(dir.place(&format!("set/{pose}/a.png"))).expect("a picture");
+    }
+    let run = ["photos", "set", "--masks", "masks", "--distal", "up", "--out", "out"];
+    mask(0.0).save(dir.place("masks/a.png")).expect("a mask");
+    dir.lunula(&run).expect(0).says_all(&[
+        "share one outline to the last digit: p/a.png and q/a.png",
+        "a mask of each pose is MASKS/<pose>/<subject>.png",
+    ]);
+    mask(0.0).save(dir.place("masks/p/a.png")).expect("a mask");
+    mask(1.0).save(dir.place("masks/q/a.png")).expect("a mask");
+    dir.lunula(&run).expect(0).never_says("share one outline");
+}
+
+#[test]
 fn folders_of_people_and_folders_within_poses_are_named() {
     let dir = Dir::new();
     for nail in ["anna/normal", "anna/flexion", "ben/normal", "ben/flexion"] {

@@ -1,6 +1,7 @@
 //! The nails of a result: rows of `nails.csv`, and their sheets of thumbnails.
 
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -44,6 +45,8 @@ pub struct NailRow {
     pub(in crate::photo) hues: Hues,
     /// By how much the picture sees the drawn axis slant, degrees clockwise, where that is much.
     pub(in crate::photo) slants_deg: Option<f64>,
+    /// Of a drawn outline, the same for the same corners to the last digit.
+    pub(in crate::photo) drawn: Option<u64>,
     /// A point of the drawn outline that stands out alone, pixels.
     pub(in crate::photo) spike_px: Option<[f64; 2]>,
     /// What the network sees instead of the drawn outline, in words.
@@ -55,7 +58,8 @@ pub struct NailRow {
 impl NailRow {
     /// A nail that was not worked on yet.
     pub(in crate::photo) fn new(photo: usize, number: usize, nail: &Nail) -> Self {
-        let drawn = nail.outline.as_ref().filter(|_| nail.source == Source::Annotated);
+        let drawn = nail.outline.as_ref().filter(|_| nail.source != Source::Detected);
+        let by_hand = drawn.filter(|_| nail.source == Source::Annotated);
         Self {
             photo,
             number,
@@ -68,11 +72,19 @@ impl NailRow {
             survey: None,
             hues: Hues::default(),
             slants_deg: nail.slants_deg,
-            spike_px: drawn.and_then(Outline::spike),
+            drawn: drawn.map(corners),
+            spike_px: by_hand.and_then(Outline::spike),
             instead: None,
             reason: String::new(),
         }
     }
+}
+
+/// A number that stands for the corners of an outline.
+fn corners(outline: &Outline) -> u64 {
+    let mut all = DefaultHasher::new();
+    outline.points().iter().for_each(|corner| corner.map(f64::to_bits).hash(&mut all));
+    all.finish()
 }
 
 const NAME: &str = "nails.csv";

@@ -199,20 +199,17 @@ fn saved_again(nails: &[Used], looks: &[(&Photo, Look)]) -> Option<String> {
 
 /// Outlines that several photographs share: drawn for one of them.
 fn same_outlines(nails: &[Used]) -> Option<String> {
-    let drawn = |nail: &Used| {
-        let frame = nail.row.frame.filter(|_| nail.row.source != Source::Detected)?;
-        let figures = [frame.center_px[0], frame.center_px[1], frame.length_px, frame.width_px];
-        Some(figures.map(f64::to_bits))
-    };
     let differ = |group: &Vec<&Used>| group.iter().any(|nail| nail.survey != group[0].survey);
-    let groups: Vec<_> = alike(nails, drawn).into_iter().filter(differ).collect();
+    let groups: Vec<_> = alike(nails, |nail| nail.row.drawn).into_iter().filter(differ).collect();
     let names: Vec<String> = groups
         .iter()
         .map(|group| group.iter().map(|nail| nail.photo.file.clone()).collect::<Vec<_>>().join(" and "))
         .collect();
+    let is_mask = groups.iter().flatten().any(|nail| nail.row.source == Source::Mask);
+    let masks = if is_mask { "; a mask of each pose is MASKS/<pose>/<subject>.png" } else { "" };
     Some(format!(
         "photographs share one outline to the last digit: {}; was it drawn on each of them? One that was copied \
-         from another pose or person shows another place of the finger",
+         from another pose or person shows another place of the finger{masks}",
         some(&names)?
     ))
 }
