@@ -81,6 +81,28 @@ fn outlines_drawn_beside_the_nail_are_warned_of_where_that_is_requested() {
 }
 
 #[test]
+fn a_nail_that_is_drawn_twice_is_named() {
+    let dir = close_ups();
+    let job = ["photos", "scene/photos", "--out", "out"];
+    dir.lunula(&job).expect(0).never_says("over one another");
+    // Smaller and a little to the side, as by a second hand; beside the first, as a neighbour that touches it.
+    let twice = |scale: f64, aside: f64| {
+        redraw(&dir, 2..=3, |file| {
+            file.shapes.truncate(2);
+            let mut again = file.shapes.iter().find(|shape| shape.label == "nail").expect("a nail").clone();
+            let width = 2.0 * again.points.iter().map(|point| (point[0] - 160.0).abs()).fold(0.0, f64::max);
+            again.points.iter_mut().for_each(|point| *point = point.map(|at| scale * at + (1.0 - scale) * 140.0));
+            again.points.iter_mut().for_each(|point| point[0] += aside * width);
+            again.group_id = None;
+            file.shapes.push(again);
+        });
+        dir.lunula(&job)
+    };
+    twice(0.9, 0.0).says("nominal/s02.png, nail 2 over nail 1, nominal/s03.png, nail 2 over nail 1; a nail that is");
+    twice(1.0, 0.9).never_says("over one another");
+}
+
+#[test]
 fn distal_against_the_picture_is_doubted() {
     let dir = close_ups();
     redraw(&dir, 1..=8, |file| file.shapes.retain(|s| s.label != "axis"));

@@ -126,6 +126,13 @@ impl Outline {
         self.polygon.unsigned_area()
     }
 
+    /// Whether the middle of one lies in the other, as of two outlines of one nail and of no two nails.
+    #[must_use]
+    pub fn is_around(&self, other: &Self) -> bool {
+        let holds = |outer: &Self, inner: &Self| inner.polygon.centroid().is_some_and(|c| outer.polygon.intersects(&c));
+        holds(self, other) || holds(other, self)
+    }
+
     /// Intersection over union with `other`, 0 to 1 (exact, by polygon clipping).
     pub fn iou(&self, other: &Self) -> f64 {
         let apart = |a: Option<Rect<f64>>, b: Option<Rect<f64>>| a.zip(b).is_some_and(|(a, b)| !a.intersects(&b));

@@ -95,13 +95,17 @@ pub struct Nail {
     pub confidence: Option<f64>,
     /// By how much the picture sees a drawn axis slant, degrees clockwise, where that is much.
     pub slants_deg: Option<f64>,
+    /// The number, from 1, of an earlier nail of the photograph that is drawn around the same place.
+    pub drawn_over: Option<usize>,
     /// Why it is left out; empty for one that is used.
     pub reason: String,
 }
 
 impl Nail {
     fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Self {
-        Self { source, outline: Some(outline), axis, confidence: Some(1.0), slants_deg: None, reason: String::new() }
+        let outline = Some(outline);
+        let (slants_deg, drawn_over, reason) = (None, None, String::new());
+        Self { source, outline, axis, confidence: Some(1.0), slants_deg, drawn_over, reason }
     }
 
     /// Leaves it out.
@@ -110,7 +114,7 @@ impl Nail {
     }
 
     fn left_out(source: Source, reason: String) -> Self {
-        Self { source, outline: None, axis: None, confidence: None, slants_deg: None, reason }
+        Self { source, outline: None, axis: None, confidence: None, slants_deg: None, drawn_over: None, reason }
     }
 
     /// As it was drawn in LabelMe; `file` begins what is said of its fault.
@@ -243,6 +247,7 @@ impl OutlineOptions {
         let name = format!("{}: ", file.file_name().unwrap_or_default().to_string_lossy());
         let mut nails: Vec<Nail> = annotation.nails.into_iter().map(|one| Nail::annotated(one, &name)).collect();
         self.complete_axes(picture, &mut nails);
+        find_drawn_over(&mut nails);
         Ok(Listed { image_path: Some(annotation.image_path), ..nails.into() })
     }
 
@@ -377,6 +382,15 @@ impl OutlineOptions {
             );
             nails[k].confidence = None;
         }
+    }
+}
+
+/// Finds nails that are drawn more than once.
+fn find_drawn_over(nails: &mut [Nail]) {
+    for k in 1..nails.len() {
+        let Some(outline) = &nails[k].outline else { continue };
+        let is_one = |earlier: &Nail| earlier.outline.as_ref().is_some_and(|earlier| earlier.is_around(outline));
+        nails[k].drawn_over = nails[..k].iter().position(is_one).map(|earlier| earlier + 1);
     }
 }
 

@@ -45,6 +45,8 @@ pub struct NailRow {
     pub(in crate::photo) hues: Hues,
     /// By how much the picture sees the drawn axis slant, degrees clockwise, where that is much.
     pub(in crate::photo) slants_deg: Option<f64>,
+    /// An earlier nail of the photograph that is drawn around the same place, by its number.
+    pub(in crate::photo) drawn_over: Option<usize>,
     /// Of a drawn outline, the same for the same corners to the last digit.
     pub(in crate::photo) drawn: Option<u64>,
     /// A point of the drawn outline that stands out alone, pixels.
@@ -72,6 +74,7 @@ impl NailRow {
             survey: None,
             hues: Hues::default(),
             slants_deg: nail.slants_deg,
+            drawn_over: nail.drawn_over,
             drawn: drawn.map(corners),
             spike_px: by_hand.and_then(Outline::spike),
             instead: None,

@@ -91,6 +91,22 @@ fn spiked(nails: &[Used]) -> Option<String> {
     ))
 }
 
+/// Nails that are drawn, and counted, more than once.
+fn drawn_twice(nails: &[Used]) -> Option<String> {
+    let is_used = |photo: usize, number: usize| {
+        nails.iter().any(|nail| nail.row.photo == photo && nail.row.number == number)
+    };
+    let such = nails.iter().filter_map(|nail| {
+        let earlier = nail.row.drawn_over.filter(|earlier| is_used(nail.row.photo, *earlier))?;
+        Some(format!("{}, nail {} over nail {earlier}", nail.photo.file, nail.row.number))
+    });
+    Some(format!(
+        "outlines of one photograph lie over one another, as no two nails do: {}; a nail that is drawn twice counts \
+         twice: remove one of the two in LabelMe or with `lunula edit`",
+        some(&such.collect::<Vec<_>>())?
+    ))
+}
+
 /// Nails that the network sees elsewhere than they are drawn.
 fn elsewhere(nails: &[Used]) -> Option<String> {
     let such = nails.iter().filter_map(|nail| Some((&nail.photo.file, nail.row.number, nail.row.instead.as_ref()?)));
@@ -116,6 +132,7 @@ pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow], looks: &[(&Photo, Look)])
         linear(&nails),
         slanting(&nails),
         spiked(&nails),
+        drawn_twice(&nails),
         elsewhere(&nails),
         folders(set),
         deeper(set),
