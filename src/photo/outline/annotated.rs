@@ -80,6 +80,8 @@ pub struct DrawnNails {
     pub nails: Vec<Annotated>,
     /// The picture that it says it was drawn on, relative to the file.
     pub image_path: String,
+    /// Whether it says the size of that picture, so that it was compared with the photograph's.
+    pub has_size: bool,
 }
 
 /// One nail of an annotation, or why its shape is none.
@@ -201,7 +203,7 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails,
         let rejected = file.shapes.iter().any(|shape| is(shape, NOT_A_NAIL));
         return Err(if rejected { AnnotationFault::Rejected(name) } else { AnnotationFault::NoNail(name) });
     }
-    Ok(DrawnNails { nails, image_path: file.image_path })
+    Ok(DrawnNails { nails, has_size: file.size().is_some(), image_path: file.image_path })
 }
 
 /// The photograph that an annotation says it was drawn on, where that is there and is another than `photo`: files that

@@ -82,6 +82,9 @@ impl Source {
     }
 }
 
+/// A hand draws so far beyond the edge of the photograph, pixels (assumed).
+const BEYOND_PX: f64 = 2.0;
+
 /// A nail with all that the next step needs, or what is known of one that is left out.
 #[derive(Debug, Clone)]
 pub struct Nail {
@@ -113,6 +116,15 @@ impl Nail {
         (self.reason, self.confidence) = (reason, None);
     }
 
+    /// Whether a drawn outline seems to be of a picture of another size: it reaches beyond the photograph (of `width` and
+    /// `height`), or around it no finger is seen as it should be.
+    pub(in crate::photo) fn may_be_scaled(&self, [width, height]: [u32; 2]) -> bool {
+        let Some(outline) = &self.outline else { return false };
+        let ends = |at: f64, side: u32| (-BEYOND_PX..f64::from(side) + BEYOND_PX).contains(&at);
+        let is_within = |[x, y]: &[f64; 2]| ends(*x, width) && ends(*y, height);
+        self.slants_deg.is_some() || !self.reason.is_empty() || !outline.points().iter().all(is_within)
+    }
+
     fn left_out(source: Source, reason: String) -> Self {
         Self { source, outline: None, axis: None, confidence: None, slants_deg: None, drawn_over: None, reason }
     }
@@ -135,11 +147,13 @@ pub struct Listed {
     pub refused: Vec<Refused>,
     /// The picture that a LabelMe file says it was drawn on, relative to the file.
     pub image_path: Option<String>,
+    /// Whether outlines may be of a picture of another size: a LabelMe file that doesn't say it.
+    pub of_unknown_size: bool,
 }
 
 impl From<Vec<Nail>> for Listed {
     fn from(nails: Vec<Nail>) -> Self {
-        Self { nails, refused: Vec::new(), image_path: None }
+        Self { nails, refused: Vec::new(), image_path: None, of_unknown_size: false }
     }
 }
 
@@ -248,7 +262,8 @@ impl OutlineOptions {
         let mut nails: Vec<Nail> = annotation.nails.into_iter().map(|one| Nail::annotated(one, &name)).collect();
         self.complete_axes(picture, &mut nails);
         find_drawn_over(&mut nails);
-        Ok(Listed { image_path: Some(annotation.image_path), ..nails.into() })
+        let (image_path, of_unknown_size) = (Some(annotation.image_path), !annotation.has_size);
+        Ok(Listed { image_path, of_unknown_size, ..nails.into() })
     }
 
     fn mask_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
@@ -303,7 +318,8 @@ impl OutlineOptions {
             let drawn = Nail::drawn(Source::Detected, n.outline, Some(n.axis));
             Nail { confidence: Some(n.confidence), reason, ..drawn }
         };
-        Ok(Listed { nails: used.chain(doubtful).map(nail).collect(), refused, image_path: None })
+        let nails: Vec<Nail> = used.chain(doubtful).map(nail).collect();
+        Ok(Listed { refused, ..nails.into() })
     }
 
     /// Looks for the axes that nobody drew, and doubts those that the picture surely contradicts.

@@ -85,6 +85,7 @@ pub fn run(
         findings.details.extend(one.detail.map(|detail| (photo, detail)));
         findings.looks.extend(one.look.map(|look| (photo, look)));
         findings.drawn_elsewhere.extend(one.drawn_on.map(|other| (photo, other)));
+        findings.of_unknown_size.extend(one.size_unknown.map(|is_odd| (photo, is_odd)));
         if matches!(one.outlines, OutlinePlace::Detection | OutlinePlace::Nowhere) {
             findings.without_outline.push(photo);
         }
@@ -212,6 +213,8 @@ struct Done {
     look: Option<Look>,
     /// The photograph that its outlines say they were drawn on, where that is another.
     drawn_on: Option<PathBuf>,
+    /// Where its LabelMe file doesn't say its picture's size: whether an outline seems to be of another.
+    size_unknown: Option<bool>,
     /// Where it was the last of its pose.
     pose: Option<PoseDone>,
 }
@@ -304,7 +307,7 @@ impl Work<'_> {
         let draw = |nails: &[Nail], refused: &[Refused]| {
             self.stages.time("outlines drawn", || results::drawn_outlines(&picture, nails, refused)).ok()
         };
-        let Listed { nails, refused, image_path } = match nails {
+        let Listed { nails, refused, image_path, of_unknown_size } = match nails {
             Ok(listed) => listed,
             Err(why) => {
                 let refused = if let SourceFault::NotFound { refused, .. } = &why { Some(refused) } else { None };
@@ -315,6 +318,8 @@ impl Work<'_> {
         if let (OutlinePlace::LabelMe(file), Some(image_path)) = (&done.outlines, &image_path) {
             done.drawn_on = other_photograph(file, image_path, &photo.path);
         }
+        let size = [picture.image.width(), picture.image.height()];
+        done.size_unknown = of_unknown_size.then(|| nails.iter().any(|nail| nail.may_be_scaled(size)));
         let mut found = if may_draw { nails.clone() } else { Vec::new() };
         done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
         let several = nails.len() > 1;

@@ -130,6 +130,8 @@ pub(in crate::photo) struct Findings<'a> {
     pub(in crate::photo) without_outline: Vec<&'a Photo>,
     /// Photographs whose outlines say that they were drawn on another, and on which.
     pub(in crate::photo) drawn_elsewhere: Vec<(&'a Photo, PathBuf)>,
+    /// Photographs whose LabelMe files don't say their picture's size, and whether an outline seems to be of another.
+    pub(in crate::photo) of_unknown_size: Vec<(&'a Photo, bool)>,
     /// Photographs on which nails were found, and how much fine detail those show.
     pub(in crate::photo) details: Vec<(&'a Photo, f64)>,
     /// What photographs look like of which a nail was used.
@@ -164,6 +166,7 @@ impl<'a> Findings<'a> {
             outlines: None,
             without_outline: Vec::new(),
             drawn_elsewhere: Vec::new(),
+            of_unknown_size: Vec::new(),
             details: Vec::new(),
             looks: Vec::new(),
             colours: BTreeMap::new(),
@@ -214,6 +217,7 @@ impl<'a> Findings<'a> {
             .chain(without)
             .chain(copies)
             .chain(elsewhere)
+            .chain(self.unknown_size(true))
             .chain(self.unclear())
             .chain(self.without_mask())
             .chain(self.blurred())
@@ -295,6 +299,29 @@ impl<'a> Findings<'a> {
         ))
     }
 
+    /// LabelMe files that don't say their picture's size: a warning where an outline seems to be of another, else a note,
+    /// unless the network looks at all outlines anyway.
+    fn unknown_size(&self, is_warning: bool) -> Option<String> {
+        let all = &self.of_unknown_size;
+        let odd: Vec<&str> = all.iter().filter(|(_, is_odd)| *is_odd).map(|(photo, _)| photo.file.as_str()).collect();
+        let what = "LabelMe files don't say the size of the picture they were drawn on (imageWidth, imageHeight";
+        let look = if self.options.check_outlines { "look at them with `lunula edit`" } else { CHECK };
+        match (odd.first(), is_warning) {
+            (Some(first), true) => Some(format!(
+                "{} {what}), and on {} of these photographs ({first} first) an outline reaches beyond the picture or is \
+                 not where a finger is seen: were photographs resized or cropped after it? {look}",
+                all.len(),
+                odd.len()
+            )),
+            (None, false) if !self.options.check_outlines => Some(format!(
+                "{} {what}; {} first), so whether photographs were resized after it isn't known: {look}",
+                all.len(),
+                all.first()?.0.file
+            )),
+            _ => None,
+        }
+    }
+
     /// Values are as the file encodes them, so photographs of several profiles are not comparable to the last bit.
     fn mixed_profiles(&self) -> Option<String> {
         let kind = |(name, of): (&Option<String>, &Encoded<'_>)| {
@@ -332,6 +359,9 @@ impl<'a> Findings<'a> {
     }
 }
 
+/// What to do about outlines that may be elsewhere than their nails.
+const CHECK: &str = "--check-outlines looks at each";
+
 /// Bits that scientific cameras keep in 16; a set whose largest sample has no more is noted.
 const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 
@@ -339,12 +369,14 @@ const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>, watch: &Watch<'_>) -> PhotosReport {
     sort_by_pose(&mut poses, |counted| &counted.pose);
     let warnings = found.warnings();
+    let unknown_size = found.unknown_size(false);
     let all_grey = !found.colours.is_empty() && found.colours.values().all(|[colour, _]| *colour == 0);
     let Findings { set, options, has_maps, rows, failed, left_out, detects, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
     notes.extend(set.unlisted.first().map(|first| {
         format!("{} photograph(s) beside those that photos.csv names are not used ({first} first)", set.unlisted.len())
     }));
+    notes.extend(unknown_size);
     notes.extend(one_subject(&poses).filter(|_| has_maps));
     let some_drawn = rows.iter().any(|row| row.source != Source::Detected);
     let used = || rows.iter().filter(|row| row.normalized.is_some());
