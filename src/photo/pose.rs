@@ -46,7 +46,8 @@ pub(in crate::photo) fn doubts<'a, I: Iterator<Item = (&'a str, &'a str)>>(names
     let subjects = || names().map(|(_, subject)| subject);
     let misspelt = misspelt(&poses, &counts);
     let places = twins("subjects", subjects()).into_iter().chain(twins("poses", poses.iter().copied()));
-    let slips = as_poses(&poses, subjects().collect()).into_iter().chain(misspelt).chain(places);
+    let people = as_people(&poses, names());
+    let slips = as_poses(&poses, subjects().collect()).into_iter().chain(people).chain(misspelt).chain(places);
     slips.chain(poses_in_names(&names().collect::<Vec<_>>())).chain(again(names())).collect()
 }
 
@@ -64,6 +65,33 @@ fn as_poses(poses: &[&str], mut subjects: Vec<&str>) -> Option<String> {
              other's place, and every map mixes poses; folders are poses, SET/<pose>/<subject>.png, or list all in \
              photos.csv (file,subject,pose)",
             subjects.join(", "),
+            poses[..poses.len().min(NAMES)].join(", ")
+        )
+    })
+}
+
+/// Names with so many digits in a row are a camera's, as `IMG_2041` and `20230412_101500` (assumed: people are numbered
+/// with fewer).
+const DIGITS: usize = 4;
+
+/// Poses that have not one subject in common, subjects called as cameras call photographs: folders of people.
+fn as_people<'a>(poses: &[&str], names: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
+    let mut by_subject: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for (pose, subject) in names {
+        by_subject.entry(subject).or_default().insert(pose);
+    }
+    let is_numbered = |name: &str| name.split(|c: char| !c.is_ascii_digit()).any(|run| run.len() >= DIGITS);
+    let numbered = by_subject.keys().filter(|subject| is_numbered(subject)).count();
+    let is_shared = by_subject.values().any(|poses| poses.len() > 1);
+    let is_known = poses.iter().any(|pose| is_of_thesis(pose));
+    let first = by_subject.keys().find(|subject| is_numbered(subject))?;
+    (poses.len() > 1 && !is_shared && !is_known && 5 * numbered >= 4 * by_subject.len()).then(|| {
+        let more = if poses.len() > NAMES { ", .." } else { "" };
+        format!(
+            "not one subject is in two of the {} poses ({}{more}), and subjects are called as photographs by a camera \
+             (`{first}`): if these folders are people, every map mixes poses; folders are poses, \
+             SET/<pose>/<subject>.png, or list all in photos.csv (file,subject,pose)",
+            poses.len(),
             poses[..poses.len().min(NAMES)].join(", ")
         )
     })
@@ -145,6 +173,21 @@ mod tests {
         sort_by_pose(&mut poses, |pose| pose);
         assert_eq!(poses, ["nominal", "normal", "extension", "flexion", "Normal", "relaxed"]);
     }
+    #[test]
+    fn people_in_place_of_poses_are_named_by_their_cameras_names() {
+        let said = |names: &[(&str, &str)]| doubts(|| names.iter().copied()).join("; ");
+        let people = [("anna", "IMG_2031"), ("anna", "IMG_2032"), ("ben", "IMG_2041"), ("ben", "IMG_2042"), ("ben", "b")];
+        let answer = said(&people);
+        assert!(answer.starts_with("not one subject is in two of the 2 poses (anna, ben), "), "{answer}");
+        assert!(answer.contains("(`IMG_2031`)"), "{answer}");
+        // Poses known as such, subjects in several, groups of people, one pose.
+        let known = [("nominal", "IMG_2031"), ("flexion", "IMG_2032")];
+        let shared = [("rest", "P1000"), ("press", "P1000"), ("press", "P1001")];
+        let groups = [("men", "s01"), ("men", "s02"), ("women", "s103"), ("women", "anna")];
+        let one = [("rest", "IMG_2031"), ("rest", "IMG_2032")];
+        assert_eq!([said(&known), said(&shared), said(&groups), said(&one)].concat(), "");
+    }
+
     #[test]
     fn poses_in_names_and_photographs_taken_again_are_named() {
         let said = |names: &[(&str, &str)]| doubts(|| names.iter().copied()).join("; ");
