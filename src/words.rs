@@ -48,24 +48,70 @@ pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     nearest.min_by_key(|(distance, _)| *distance).filter(|(distance, _)| *distance <= slips).map(|(_, known)| known)
 }
 
-/// A name without what a slip of the finger changes first: case and spaces.
-pub(crate) fn plain(name: &str) -> String {
-    name.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
+/// Marks that stand behind their letters where names are decomposed, as they are on a Mac, letters that have each, and
+/// both as one character: Unicode's Latin-1 Supplement and Latin Extended-A.
+const MARKED: [(char, &str, &str); 13] = [
+    ('\u{300}', "AEIOUaeiou", "ÀÈÌÒÙàèìòù"),
+    ('\u{301}', "AEIOUYaeiouyCcLlNnRrSsZz", "ÁÉÍÓÚÝáéíóúýĆćĹĺŃńŔŕŚśŹź"),
+    ('\u{302}', "AEIOUaeiouCcGgHhJjSsWwYy", "ÂÊÎÔÛâêîôûĈĉĜĝĤĥĴĵŜŝŴŵŶŷ"),
+    ('\u{303}', "ANOanoIiUu", "ÃÑÕãñõĨĩŨũ"),
+    ('\u{304}', "AaEeIiOoUu", "ĀāĒēĪīŌōŪū"),
+    ('\u{306}', "AaEeGgIiOoUu", "ĂăĔĕĞğĬĭŎŏŬŭ"),
+    ('\u{307}', "CcEeGgIZz", "ĊċĖėĠġİŻż"),
+    ('\u{308}', "AEIOUaeiouyY", "ÄËÏÖÜäëïöüÿŸ"),
+    ('\u{30a}', "AaUu", "ÅåŮů"),
+    ('\u{30b}', "OoUu", "ŐőŰű"),
+    ('\u{30c}', "CcDdEeLlNnRrSsTtZz", "ČčĎďĚěĽľŇňŘřŠšŤťŽž"),
+    ('\u{327}', "CcGgKkLlNnRrSsTt", "ÇçĢģĶķĻļŅņŖŗŞşŢţ"),
+    ('\u{328}', "AaEeIiUu", "ĄąĘęĮįŲų"),
+];
+
+/// A name with its accents as they are typed: each with its letter one character.
+pub(crate) fn composed(name: &str) -> String {
+    let one = |letter: char, mark: char| {
+        let (_, letters, marked) = MARKED.iter().find(|(known, ..)| *known == mark)?;
+        letters.chars().zip(marked.chars()).find(|(bare, _)| *bare == letter).map(|(_, marked)| marked)
+    };
+    let mut composed = String::with_capacity(name.len());
+    for c in name.chars() {
+        match composed.chars().last().and_then(|letter| one(letter, c)) {
+            Some(marked) => {
+                composed.pop();
+                composed.push(marked);
+            }
+            None => composed.push(c),
+        }
+    }
+    composed
 }
 
-/// A warning where two names of what there is one of, `Anna` and `anna`, differ in case and spaces only.
+/// What makes names alike of which some have their accents apart.
+pub(crate) const COMPOSE: &str = "`convmv -f utf8 -t utf8 --nfc -r --notest FOLDER` encodes all in one way";
+
+/// A name without what a slip of the finger changes first, case and spaces, and its accents as they are typed.
+pub(crate) fn plain(name: &str) -> String {
+    composed(name).chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
+}
+
+/// A warning where two names of what there is one of, `Anna` and `anna`, differ in case, spaces or the encoding of
+/// accents only.
 pub(crate) fn twins<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let mut seen: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
     for name in names {
         seen.entry(plain(name)).or_default().insert(name);
     }
-    let twins: Vec<String> = seen
-        .into_values()
-        .filter(|alike| alike.len() > 1)
-        .map(|alike| alike.iter().map(|name| format!("`{}`", shown(name))).collect::<Vec<_>>().join(" and "))
-        .collect();
-    let each = "differ in case or spaces only, and count apart: are they the same?";
-    (!twins.is_empty()).then(|| format!("{what} {} {each}", twins.join(", ")))
+    let twins: Vec<BTreeSet<&str>> = seen.into_values().filter(|alike| alike.len() > 1).collect();
+    let has_accents_apart = twins.iter().flatten().any(|name| composed(name) != *name);
+    let names = |alike: &BTreeSet<&str>| {
+        alike.iter().map(|name| format!("`{}`", shown(name))).collect::<Vec<_>>().join(" and ")
+    };
+    let names: Vec<String> = twins.iter().map(names).collect();
+    let each = if has_accents_apart {
+        format!("differ in case, spaces or the encoding of accents only, and count apart: are they the same? {COMPOSE}")
+    } else {
+        "differ in case or spaces only, and count apart: are they the same?".to_owned()
+    };
+    (!twins.is_empty()).then(|| format!("{what} {} {each}", names.join(", ")))
 }
 
 /// What to write instead of an unknown `name`: the nearest, or the choice.
@@ -122,6 +168,21 @@ mod tests {
         assert_eq!(shown("a\u{1b}[2Jb\n\u{9b}é 指"), "a\\u{1b}[2Jb\\n\\u{9b}é 指");
         assert_eq!(shown_lines("one\n  two\r"), "one\n  two\\r");
         assert!(matches!(shown("plain"), Cow::Borrowed("plain")));
+    }
+
+    #[test]
+    fn accents_are_put_together_with_their_letters() {
+        assert_eq!(composed("Zoe\u{308} S\u{30c}imu\u{30a}nek, e\u{323}, \u{308}"), "Zoë Šimůnek, e\u{323}, \u{308}");
+        for (mark, letters, marked) in MARKED {
+            assert_eq!(letters.chars().count(), marked.chars().count(), "{mark:?}");
+            assert!(letters.is_ascii() && marked.chars().all(|c| ('\u{c0}'..'\u{180}').contains(&c)), "{marked}");
+        }
+        let said = twins("subjects", ["Zoe\u{308}", "Zo\u{eb}", "Zoe"]).unwrap_or_default();
+        assert!(
+            said.starts_with("subjects `Zoe\u{308}` and `Zo\u{eb}` differ in case, spaces or the encoding"),
+            "{said}"
+        );
+        assert_eq!(twins("subjects", ["Zoe", "Zo\u{eb}", "Zoa\u{308}"]), None);
     }
 
     #[test]

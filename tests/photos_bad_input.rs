@@ -265,6 +265,23 @@ fn one_mask_for_two_poses_is_named_though_each_picture_has_its_own_axis() {
 }
 
 #[test]
+fn names_that_only_look_the_same_are_named() {
+    let dir = Dir::new();
+    let (typed, of_a_mac) = ("Zo\u{eb}", "Zoe\u{308}");
+    dir.nail(&format!("set/p/{typed}"));
+    dir.nail(&format!("set/q/{of_a_mac}"));
+    let run = ["photos", "set", "--out", "out"];
+    dir.lunula(&run).expect(0).says("differ in case, spaces or the encoding of accents only, and count apart");
+    let beside = dir.path(&format!("set/q/{of_a_mac}.json"));
+    std::fs::rename(&beside, dir.path(&format!("set/q/{typed}.json"))).expect("moved");
+    let not_found = "1 outline(s) are not found (set/q/Zo\u{eb}.json first): their names look like their photographs'";
+    dir.lunula(&run).says(not_found);
+    std::fs::rename(dir.path(&format!("set/q/{typed}.json")), beside).expect("moved");
+    dir.write("set/photos.csv", format!("file,subject,pose\np/{typed}.png,a,p\nq/{typed}.png,a,q\n"));
+    dir.lunula(&run).expect(1).says("line 3: q/Zo\u{eb}.png does not exist beside photos.csv; one is there whose name");
+}
+
+#[test]
 fn folders_of_people_and_folders_within_poses_are_named() {
     let dir = Dir::new();
     for nail in ["anna/normal", "anna/flexion", "ben/normal", "ben/flexion"] {

@@ -94,7 +94,9 @@ fn labelme_files_without_a_size_are_noted_and_warned_of_where_they_do_not_fit() 
     redraw(&dir, 3..=3, |file| {
         file.shapes.iter_mut().flat_map(|shape| &mut shape.points).for_each(|point| *point = point.map(|at| 3.0 * at));
     });
-    dir.lunula(&job).expect(1).says(&format!("warning: {what}), and on 1 of these photographs (nominal/s03.png first)"));
+    dir.lunula(&job)
+        .expect(1)
+        .says(&format!("warning: {what}), and on 1 of these photographs (nominal/s03.png first)"));
 }
 
 #[test]

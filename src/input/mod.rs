@@ -20,7 +20,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::words::nearest;
+use crate::words::{composed, nearest};
 pub(crate) use copies::{copies, same_to_the_byte};
 
 /// The most that a pipe may bring (assumed: two hours of eight photodiodes at 1 kHz are 0.6 GB of CSV).
@@ -151,6 +151,18 @@ fn missing(path: &Path) -> String {
         Some(near) => format!("is not there{what}; did you mean `{}`?", part.with_file_name(near).display()),
         None => format!("is not there{what}; check its name"),
     }
+}
+
+/// The file in the folder of `path`, among those that fit, of a name that looks the same up to its ending: its accents
+/// are encoded in another way, as a Mac does.
+pub(crate) fn encoded_otherwise(path: &Path, fits: impl Fn(&Path) -> bool) -> Option<PathBuf> {
+    let stem = path.file_stem()?.to_str().filter(|stem| !stem.is_ascii())?;
+    let folder = path.parent().filter(|at| !at.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let looks_the_same = |other: &PathBuf| {
+        let other = other.file_stem().and_then(|other| other.to_str());
+        other.is_some_and(|other| other != stem && composed(other) == composed(stem))
+    };
+    list(folder).ok()?.into_iter().find(|other| looks_the_same(other) && fits(other))
 }
 
 /// All of a file or a pipe.

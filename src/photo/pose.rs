@@ -176,7 +176,8 @@ mod tests {
     #[test]
     fn people_in_place_of_poses_are_named_by_their_cameras_names() {
         let said = |names: &[(&str, &str)]| doubts(|| names.iter().copied()).join("; ");
-        let people = [("anna", "IMG_2031"), ("anna", "IMG_2032"), ("ben", "IMG_2041"), ("ben", "IMG_2042"), ("ben", "b")];
+        let people =
+            [("anna", "IMG_2031"), ("anna", "IMG_2032"), ("ben", "IMG_2041"), ("ben", "IMG_2042"), ("ben", "b")];
         let answer = said(&people);
         assert!(answer.starts_with("not one subject is in two of the 2 poses (anna, ben), "), "{answer}");
         assert!(answer.contains("(`IMG_2031`)"), "{answer}");

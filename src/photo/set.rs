@@ -16,7 +16,7 @@ use crate::input;
 use crate::photo::pose::sort_by_pose;
 use crate::photograph::{extension, is_picture};
 use crate::table::{delimiter_of, line_of_row};
-use crate::words::shown;
+use crate::words::{COMPOSE, shown};
 
 /// Photographs in formats that lunula does not read: said, not passed over.
 const OTHER_PICTURES: [&str; 14] =
@@ -287,7 +287,7 @@ impl PhotoSet {
             }
             let outline = outline.map(cell).filter(|o| !o.is_empty()).map(|o| self.folder.join(o));
             if let Some(missing) = outline.as_ref().filter(|o| !o.is_file()) {
-                self.fault(place, format!("the outline {} does not exist", missing.display()));
+                self.fault(place, format!("the outline {} does not exist{}", missing.display(), accents(missing)));
                 continue;
             }
             let tone = tone.map(cell).filter(|tone| !tone.is_empty());
@@ -384,8 +384,17 @@ fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<Str
     if let Some((name, _)) = cells.iter().find(|(_, value)| value.is_empty()) {
         return Some(format!("the cell `{name}` is empty"));
     }
-    let missing = || (!folder.join(file).is_file()).then(|| format!("{file} does not exist beside photos.csv"));
+    let path = folder.join(file);
+    let missing = || (!path.is_file()).then(|| format!("{file} does not exist beside photos.csv{}", accents(&path)));
     names_fault(subject, pose).or_else(missing)
+}
+
+/// What to say of a file that is missing where one of its name is there that only looks the same.
+fn accents(missing: &Path) -> String {
+    let there = input::encoded_otherwise(missing, |other| other.extension() == missing.extension());
+    there.map_or_else(String::new, |_| {
+        format!("; one is there whose name only looks the same, its accents are encoded in another way: {COMPOSE}")
+    })
 }
 
 const NO_PICTURE: &str = "is not a photograph that lunula reads; export it as PNG, TIFF, BMP or JPEG";

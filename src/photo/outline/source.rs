@@ -15,6 +15,7 @@ use super::{
     Axis, DetectOptions, Detected, FoundAxis, MaskFault, MaskValues, NothingFound, Outline, Refused, Side, detect,
     find_axes, find_axes_towards, outlines_from_mask, outlines_of_values,
 };
+use crate::input::encoded_otherwise;
 use crate::photo::set::Photo;
 use crate::photograph::{MOST_MEGAPIXELS, PICTURES, Photograph, ReadFault, is_picture};
 use crate::vision::VisionError;
@@ -116,8 +117,8 @@ impl Nail {
         (self.reason, self.confidence) = (reason, None);
     }
 
-    /// Whether a drawn outline seems to be of a picture of another size: it reaches beyond the photograph (of `width` and
-    /// `height`), or around it no finger is seen as it should be.
+    /// Whether a drawn outline seems to be of a picture of another size: it reaches beyond the photograph, of `width`
+    /// and `height`, or around it no finger is seen as it should be.
     pub(in crate::photo) fn may_be_scaled(&self, [width, height]: [u32; 2]) -> bool {
         let Some(outline) = &self.outline else { return false };
         let ends = |at: f64, side: u32| (-BEYOND_PX..f64::from(side) + BEYOND_PX).contains(&at);
@@ -240,6 +241,21 @@ impl OutlineOptions {
             return OutlinePlace::Mask(mask);
         }
         if self.sources == Sources::Annotated { OutlinePlace::Nowhere } else { OutlinePlace::Detection }
+    }
+
+    /// What would be the outline of `photo` if its accents were encoded as the photograph's are.
+    pub(in crate::photo) fn encoded_otherwise(&self, photo: &Photo) -> Option<PathBuf> {
+        if self.sources == Sources::Detect {
+            return None;
+        }
+        let is_labelme = |other: &Path| other.extension().is_some_and(|ending| ending == "json");
+        let beside = encoded_otherwise(&photo.path, is_labelme).filter(|_| !self.listed_only);
+        let name = photo.path.file_name()?;
+        let mask = |folder: &PathBuf| {
+            let places = [folder.join(&photo.pose), folder.to_owned()];
+            places.iter().find_map(|place| encoded_otherwise(&place.join(name), is_picture))
+        };
+        beside.or_else(|| self.masks.as_ref().and_then(mask))
     }
 
     /// The nails of an opened photograph whose outlines come from `place`.

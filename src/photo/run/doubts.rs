@@ -93,9 +93,8 @@ fn spiked(nails: &[Used]) -> Option<String> {
 
 /// Nails that are drawn, and counted, more than once.
 fn drawn_twice(nails: &[Used]) -> Option<String> {
-    let is_used = |photo: usize, number: usize| {
-        nails.iter().any(|nail| nail.row.photo == photo && nail.row.number == number)
-    };
+    let is_used =
+        |photo: usize, number: usize| nails.iter().any(|nail| nail.row.photo == photo && nail.row.number == number);
     let such = nails.iter().filter_map(|nail| {
         let earlier = nail.row.drawn_over.filter(|earlier| is_used(nail.row.photo, *earlier))?;
         Some(format!("{}, nail {} over nail {earlier}", nail.photo.file, nail.row.number))

@@ -23,6 +23,7 @@ use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Look, Partials, Sums};
 use crate::photograph::Profile;
 use crate::stages::Stage;
+use crate::words::COMPOSE;
 
 /// Where the report goes among the results.
 const JSON: &str = "run.json";
@@ -220,6 +221,7 @@ impl<'a> Findings<'a> {
             .chain(self.unknown_size(true))
             .chain(self.unclear())
             .chain(self.without_mask())
+            .chain(self.encoded_otherwise())
             .chain(self.blurred())
             .chain(self.overexposed())
             .chain(doubts(self.set, &self.rows, &self.looks))
@@ -286,6 +288,20 @@ impl<'a> Findings<'a> {
         ))
     }
 
+    /// Outlines that are not found as their names only look like their photographs'.
+    fn encoded_otherwise(&self) -> Option<String> {
+        let outlines = &self.options.outlines;
+        let one = |photo: &&Photo| outlines.encoded_otherwise(photo);
+        let mut all = self.without_outline.iter().filter_map(one);
+        let first = all.next()?;
+        Some(format!(
+            "{} outline(s) are not found ({} first): their names look like their photographs', but their accents are \
+             encoded in another way, as on a Mac: {COMPOSE}",
+            1 + all.count(),
+            first.display()
+        ))
+    }
+
     /// Outlines that were taken for another photograph's.
     fn drawn_on_others(&self) -> Option<String> {
         let (first, other) = self.drawn_elsewhere.first()?;
@@ -299,8 +315,8 @@ impl<'a> Findings<'a> {
         ))
     }
 
-    /// LabelMe files that don't say their picture's size: a warning where an outline seems to be of another, else a note,
-    /// unless the network looks at all outlines anyway.
+    /// LabelMe files that don't say their picture's size: a warning where an outline seems to be of another, else a
+    /// note, unless the network looks at all outlines anyway.
     fn unknown_size(&self, is_warning: bool) -> Option<String> {
         let all = &self.of_unknown_size;
         let odd: Vec<&str> = all.iter().filter(|(_, is_odd)| *is_odd).map(|(photo, _)| photo.file.as_str()).collect();
@@ -308,8 +324,8 @@ impl<'a> Findings<'a> {
         let look = if self.options.check_outlines { "look at them with `lunula edit`" } else { CHECK };
         match (odd.first(), is_warning) {
             (Some(first), true) => Some(format!(
-                "{} {what}), and on {} of these photographs ({first} first) an outline reaches beyond the picture or is \
-                 not where a finger is seen: were photographs resized or cropped after it? {look}",
+                "{} {what}), and on {} of these photographs ({first} first) an outline reaches beyond it or is not \
+                 where a finger is seen: were photographs resized or cropped after it? {look}",
                 all.len(),
                 odd.len()
             )),
