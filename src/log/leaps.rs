@@ -10,7 +10,7 @@ use super::lines::order::short;
 use super::rest::without_spikes;
 
 /// So many rows make a fault; fewer are named as [glitches](super::doubts::glitches).
-const ROWS: usize = 4;
+const ROWS: usize = 3;
 /// A leap is so many times as long as 90 of 100 steps that are any, and has this share of the range; where it comes
 /// back to, it has left, within this share of the leap.
 const STEPS: f64 = 8.0;
@@ -56,16 +56,16 @@ pub(super) fn leaping(columns: &[Leaps]) -> Option<String> {
     let most = columns.iter().max_by_key(|one| one.rows)?;
     let names: Vec<&str> = columns.iter().map(|one| one.name.as_str()).collect();
     let to = match most.there {
-        there if 2 * there > most.rows => format!("in {there} of them to exactly {}", short(most.to)),
+        there if 2 * there > most.rows => format!("{there} of them to {}", short(most.to)),
         _ => format!("one of them to {}", short(most.to)),
     };
     Some(format!(
-        "{} leap for a single row and come back, {} in {} rows, {to}: are missing values written as numbers, or are \
-         they glitches? Leave such cells empty: what learns from them, or counts with them, is wrong by far more than \
-         their share",
+        "{}: single rows leap from those before and after, {} of {}, {to}: are missing values written as numbers, or \
+         are they glitches? Leave such cells empty: what learns from them, or counts with them, is wrong by far more \
+         than their share",
         names.join(", "),
-        most.name,
-        most.rows
+        most.rows,
+        most.name
     ))
 }
 
@@ -90,17 +90,17 @@ mod tests {
         for (code, every) in [(0.0, 600), (-1.0, 100), (-999.0, 40), (4.5, 25)] {
             let found = said(|k| if k % every == 7 { code } else { volts(k) }).unwrap_or_default();
             let rows = 3000 / every;
-            let words = format!("P1 in {rows} rows, in {rows} of them to exactly {code}: are missing");
+            let words = format!("P1: single rows leap from those before and after, {rows} of P1, {rows} of them to {code}:");
             assert!(found.contains(&words), "{found}");
         }
         let glitches = said(|k| if k % 300 == 7 { 1.0 + 0.1 * (k / 300) as f64 } else { volts(k) });
-        assert!(glitches.is_some_and(|said| said.contains("P1 in 10 rows, one of them to ")));
+        assert!(glitches.is_some_and(|said| said.contains("10 of P1, one of them to ")));
     }
 
     #[test]
     fn fingers_steps_and_a_last_digit_that_flickers_are_not() {
         assert_eq!(said(volts), None);
-        assert_eq!(said(|k| if k % 1000 == 7 { 0.0 } else { volts(k) }), None, "three are named as glitches");
+        assert_eq!(said(|k| if k % 1500 == 7 { 0.0 } else { volts(k) }), None, "two are named as glitches");
         assert_eq!(said(|k| if k % 500 < 250 { 0.0 } else { -2.0 }), None, "steps");
         assert_eq!(said(|k| 2.5 + 0.001 * f64::from(k % 40 == 0)), None, "one digit");
         assert_eq!(said(|k| if k % 40 < 2 { 0.0 } else { volts(k) }), None, "two rows are no single one");

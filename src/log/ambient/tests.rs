@@ -338,7 +338,7 @@ fn rows_beside_a_switch_of_the_led_are_what_it_says() {
 
 #[test]
 fn missing_values_that_are_written_as_numbers_are_seen_in_lit_and_in_unlit_rows() {
-    for (place, name) in [(1, "P1 leap"), (0, "P1 unlit leap")] {
+    for (place, name) in [(1, "P1: single rows leap"), (0, "P1 unlit: single rows leap")] {
         let mut log = alternating(3000, |t| 0.5 + 0.05 * (0.3 * t).sin() + 0.001 * (70.0 * t).sin());
         log.photodiodes[0].values.iter_mut().skip(200 + place).step_by(200).for_each(|value| *value = -1.0);
         is_noted(&all(&log), name);
