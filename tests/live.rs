@@ -743,7 +743,8 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
         _ => format!("{line}\n"),
     };
     dir.write("loose.csv", dir.text("r.csv").lines().enumerate().map(loose).collect::<String>());
-    let report = dir.lunula(&["mouse", "--source", "loose.csv", "--model", "f.json", "--json"]).expect(0).json();
+    let loose = ["mouse", "--source", "loose.csv", "--model", "f.json", "--events", "l.jsonl", "--json"];
+    let report = dir.lunula(&loose).expect(0).json();
     assert_eq!(report["pointer"]["clicks"], 1, "{report}");
     // What a person did can't be done again.
     let fast = dir.text("e.jsonl");
