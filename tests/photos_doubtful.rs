@@ -86,10 +86,10 @@ fn labelme_files_without_a_size_are_noted_and_warned_of_where_they_do_not_fit() 
     let job = ["photos", "scene/photos", "--out", "out"];
     redraw(&dir, 1..=7, |file| (file.image_width, file.image_height) = (None, None));
     let fitting = dir.lunula(&job).expect(0);
-    let what = "7 LabelMe files don't say the size of the picture they were drawn on (imageWidth, imageHeight";
+    let what = "7 LabelMe file(s) don't say the size of the picture they were drawn on (imageWidth, imageHeight";
     fitting.says(&format!("note: {what}; nominal/s01.png first)")).never_says("warning");
     let check = [&job[..], &["--check-outlines"]].concat();
-    dir.lunula(&check).expect(0).never_says("LabelMe files");
+    dir.lunula(&check).expect(0).never_says("LabelMe file(s)");
     // As drawn on a picture three times as large.
     redraw(&dir, 3..=3, |file| {
         file.shapes.iter_mut().flat_map(|shape| &mut shape.points).for_each(|point| *point = point.map(|at| 3.0 * at));

@@ -216,7 +216,8 @@ fn saved_again(nails: &[Used], looks: &[(&Photo, Look)]) -> Option<String> {
 /// Outlines that several photographs share: drawn for one of them.
 fn same_outlines(nails: &[Used]) -> Option<String> {
     let differ = |group: &Vec<&Used>| group.iter().any(|nail| nail.survey != group[0].survey);
-    let groups: Vec<_> = alike(nails, |nail| nail.row.drawn).into_iter().filter(differ).collect();
+    let mut groups: Vec<_> = alike(nails, |nail| nail.row.drawn).into_iter().filter(differ).collect();
+    groups.sort_by_key(|group| group[0].row.photo);
     let names: Vec<String> = groups
         .iter()
         .map(|group| group.iter().map(|nail| nail.photo.file.clone()).collect::<Vec<_>>().join(" and "))

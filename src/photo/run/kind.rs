@@ -59,7 +59,7 @@ impl Job for PhotosOptions {
         ],
         &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::pictures("normalized")],
     )
-    .revision(16);
+    .revision(17);
 
     fn checked(mut self) -> Result<Self, OptionFault> {
         if self.channels {
@@ -166,7 +166,7 @@ impl Job for MapsJob {
         ],
         &[Part::new("maps", ""), Part::new("nails", "nails.csv"), Part::if_wanted(FIGURES, "figures")],
     )
-    .revision(4);
+    .revision(5);
 
     fn demand(&self, role: &str, _own: &Demand) -> Demand {
         let parts = if role == "sums" { ["sums"].into() } else { [].into() };

@@ -320,7 +320,7 @@ impl<'a> Findings<'a> {
     fn unknown_size(&self, is_warning: bool) -> Option<String> {
         let all = &self.of_unknown_size;
         let odd: Vec<&str> = all.iter().filter(|(_, is_odd)| *is_odd).map(|(photo, _)| photo.file.as_str()).collect();
-        let what = "LabelMe files don't say the size of the picture they were drawn on (imageWidth, imageHeight";
+        let what = "LabelMe file(s) don't say the size of the picture they were drawn on (imageWidth, imageHeight";
         let look = if self.options.check_outlines { "look at them with `lunula edit`" } else { CHECK };
         match (odd.first(), is_warning) {
             (Some(first), true) => Some(format!(
