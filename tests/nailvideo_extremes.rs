@@ -358,3 +358,20 @@ mod real_data {
         }
     }
 }
+
+#[test]
+fn what_an_earlier_run_left_is_named() {
+    let dir = Dir::new();
+    dir.words(&REST.replace("--seconds 6", "--seconds 2")).expect(0);
+    let job = "nailvideo s/video.mp4 --outline s/outline.json --out out";
+    let first = dir.words(&format!("{job} --cells 8 --maps 0..1 --frames")).expect(0);
+    let again = dir.words(&format!("{job} --cells 8 --maps 0..1 --frames")).expect(0);
+    for answer in [first, again] {
+        assert!(!answer.stderr.contains("not of this run"), "{}", answer.stderr);
+    }
+    // As of a video that was longer.
+    dir.write("out/frames/000999.png", "of an earlier run");
+    dir.words(&format!("{job} --frames --no-figures --parquet")).expect(0).says("and 11 more existed before");
+    let other = dir.words(&format!("{job} --frames")).expect(0);
+    other.says("out/cells.csv and 6 more existed before and are not of this run");
+}

@@ -133,17 +133,20 @@ impl Staging {
         WriteError::File { path: self.target.join(name), why: why.to_string() }
     }
 
-    /// Files that stand in the folders that results will go to and are none of them: an earlier run's. Sorted.
-    pub fn left_from_earlier(&self) -> Vec<PathBuf> {
+    /// Files that are in the folders that results will go to and are none of them: an earlier run's. Sorted. `may` names
+    /// the files and folders of results that a run with other options writes.
+    pub fn left_from_earlier(&self, may: &[&str]) -> Vec<PathBuf> {
         let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
-        let folders: BTreeSet<&Path> =
-            names.iter().filter_map(|n| n.parent()).filter(|f| !f.as_os_str().is_empty()).collect();
+        let may = may.iter().map(Path::new);
+        let of_results = names.iter().filter_map(|n| n.parent()).filter(|f| !f.as_os_str().is_empty());
+        let folders: BTreeSet<&Path> = of_results.chain(may.clone()).collect();
         let written: BTreeSet<&Path> = names.iter().map(PathBuf::as_path).collect();
         let mut left: Vec<PathBuf> = folders
             .into_iter()
             .flat_map(|folder| fs::read_dir(self.target.join(folder)).into_iter().flatten().flatten())
-            .filter(|entry| entry.path().is_file())
             .map(|entry| entry.path())
+            .chain(may.map(|name| self.target.join(name)))
+            .filter(|path| path.is_file())
             .filter(|path| path.strip_prefix(&self.target).is_ok_and(|name| !written.contains(name)))
             .collect();
         left.sort();

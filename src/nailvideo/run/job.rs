@@ -35,6 +35,22 @@ use crate::photograph::Photograph;
 use crate::stages::{Stages, left_out};
 use crate::video::{Frame, Info, Item, Video};
 
+/// What a run with other options may write, ..
+const OF_OTHERS: [&str; 10] = [
+    "photodiodes.csv",
+    "photodiodes.parquet",
+    "motion.csv",
+    "motion.parquet",
+    "presses.csv",
+    "presses.parquet",
+    "cells.csv",
+    "cells.parquet",
+    "frames",
+    "maps",
+];
+/// .. and what it draws.
+const DRAWN: [&str; 5] = ["report.html", "sheet.png", "sheet.svg", "traces.png", "traces.svg"];
+
 /// The first good frame, for LabelMe.
 const PICTURE: &str = "nail.png";
 const OUTLINE: &str = "nail.json";
@@ -491,6 +507,9 @@ impl Job<'_> {
         for sums in windows.iter().filter(|sums| sums.frames == 0) {
             report.warnings.push(format!("--maps {}: the nail is followed in none of its frames", sums.window));
         }
+        // This run's own pictures are drawn below.
+        let drawn: &[&str] = if thumbnails.is_some() { &[] } else { &DRAWN };
+        report.warn_of_left(&self.staging.left_from_earlier(&[&OF_OTHERS, drawn].concat()));
         if let Some(thumbnails) = thumbnails {
             self.stages.time("figures", || draw(self.staging, &mut report, &recording, &pressed, &thumbnails))?;
         }

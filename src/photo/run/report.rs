@@ -461,7 +461,7 @@ impl PhotosReport {
         nail_sheets: &[DrawnSheet],
         staging: &Staging,
     ) -> Result<(), WriteError> {
-        self.warn_of_left(&staging.left_from_earlier());
+        self.warn_of_left(&staging.left_from_earlier(&[]));
         staging.write(HTML, self.html(nails, sheets, nail_sheets).as_bytes())?;
         staging.write(JSON, self.text().as_bytes())
     }
