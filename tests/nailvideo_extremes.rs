@@ -204,6 +204,8 @@ fn light_that_drifts_and_glare_that_moves_are_no_press() {
         let photodiodes = dir.table("out/photodiodes.csv");
         assert!(photodiodes.iter().all(|row| row["status"] == "ok"), "{light}");
         assert_eq!(courses(&dir), 0, "{light}");
+        let report = fs::read_to_string(dir.path("out/run.json")).expect("a report");
+        assert!(report.contains("glare or a shadow that colours the light goes over P"), "{light}: {report}");
         fs::remove_dir_all(dir.path("s")).expect("removed");
         fs::remove_dir_all(dir.path("out")).expect("removed");
     }

@@ -133,8 +133,8 @@ impl Staging {
         WriteError::File { path: self.target.join(name), why: why.to_string() }
     }
 
-    /// Files that are in the folders that results will go to and are none of them: an earlier run's. Sorted. `may` names
-    /// the files and folders of results that a run with other options writes.
+    /// Files that are in the folders that results will go to and are none of them: an earlier run's. Sorted. `may`
+    /// names the files and folders of results that a run with other options writes.
     pub fn left_from_earlier(&self, may: &[&str]) -> Vec<PathBuf> {
         let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
         let may = may.iter().map(Path::new);

@@ -11,7 +11,7 @@ mod tests;
 
 use rayon::prelude::*;
 
-use crate::median::median_of;
+use crate::median::{ends, median_of};
 pub(in crate::nailvideo) use find::noise_sd;
 use find::presses;
 use fit::{Course, LEAST_SEEN, fit};
@@ -42,6 +42,8 @@ pub(in crate::nailvideo) struct Trace {
     pub(in crate::nailvideo) values: Vec<f64>,
     /// Red at the same place, less the light's, in the values' unit; NaN in a grey video.
     pub(in crate::nailvideo) red: Vec<f64>,
+    /// By how much glare or coloured light may take the values along; 0 where that is not seen.
+    pub(in crate::nailvideo) tint: Vec<f64>,
 }
 
 /// A press or a release.
@@ -268,6 +270,10 @@ fn course(
     let is_light = |of_light: &[f64]| change(of_light).is_some_and(|by| by > MOST_OF_LIGHT * course.depth.abs());
     if is_light(of.skin) || is_light(&trace.red) {
         return refused("the light changed with it", depth);
+    }
+    let [low, high] = ends(known.iter().map(|&k| trace.tint[k]));
+    if high - low > MOST_RESIDUAL * course.depth.abs() {
+        return refused("glare or coloured light changed with it", depth);
     }
     for end in [&mut course.onset_s.value, &mut course.onset_s.low, &mut course.onset_s.high] {
         *end += at_s;

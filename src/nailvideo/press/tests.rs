@@ -26,7 +26,12 @@ fn rows_of(time_s: &[f64], values: Vec<f64>) -> Vec<Row> {
 }
 
 fn rows_in_light(time_s: &[f64], values: Vec<f64>, skin: &[f64], red: &[f64]) -> Vec<Row> {
-    let traces = [Trace { name: "P2".to_owned(), values, red: red.to_vec() }];
+    let tint = vec![0.0; red.len()];
+    rows_with(time_s, Trace { name: "P2".to_owned(), values, red: red.to_vec(), tint }, skin)
+}
+
+fn rows_with(time_s: &[f64], trace: Trace, skin: &[f64]) -> Vec<Row> {
+    let traces = [trace];
     rows(&Recording { time_s, traces: &traces, ends: &[], skin, whole: 100.0 })
 }
 
@@ -223,6 +228,14 @@ fn what_does_not_end_or_is_not_seen_is_refused() {
         let rows = rows_in_light(&time_s, values.clone(), skin, red);
         assert!(rows.iter().all(|row| row.status().contains("light")), "{:?}", rows[0].status());
     }
+    // Glare that goes over it for a second of the press, as high as a part of the step.
+    for (part, is_refused) in [(0.05, false), (0.2, true)] {
+        let of_glare = |time_s: &f64| if (4.0..5.0).contains(time_s) { part * 15.0 } else { 0.0 };
+        let tint = time_s.iter().map(of_glare).collect();
+        let trace = Trace { name: "P2".to_owned(), values: values.clone(), red: still.clone(), tint };
+        let rows = rows_with(&time_s, trace, &still);
+        assert_eq!(rows[0].status().contains("glare or coloured light"), is_refused, "{}", rows[0].status());
+    }
 }
 
 #[test]
@@ -241,7 +254,7 @@ fn a_video_that_begins_while_the_finger_presses_is_doubted() {
     let said = |proximal: f64, distal: f64| {
         let end = |name: &str, part: f64| {
             let values: Vec<f64> = values.iter().map(|value| part * value).collect();
-            Trace { name: name.to_owned(), red: vec![0.0; values.len()], values }
+            Trace { name: name.to_owned(), red: vec![0.0; values.len()], tint: vec![0.0; values.len()], values }
         };
         let (ends, still) = ([end("distal", distal), end("proximal", proximal)], vec![0.0; values.len()]);
         let traces = [end("P3", proximal)];

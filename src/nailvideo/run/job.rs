@@ -1,7 +1,7 @@
 //! The job: a video and options in, tables, maps and pictures out; the one entry that command line and pipelines call.
 //!
 //! A frame is decoded, the nail found in it by the motion since the first good frame, its photodiodes read, and the
-//! frame forgotten. Of each frame a row of numbers is kept (some 24 bytes for each photodiode) until all are read: the
+//! frame forgotten. Of each frame a row of numbers is kept (some 32 bytes for each photodiode) until all are read: the
 //! noise, and with it the standard errors, is known then.
 
 use std::collections::BTreeMap;
@@ -16,6 +16,7 @@ use super::draw::{Thumbnails, draw};
 use super::plan::{light_of, steps};
 use super::report::{FrameCounts, MapFigures, NailFigures, NailVideoFigures, NailVideoReport, PhotodiodeFigures};
 use super::results::{CellTable, Kept, MotionTable, Reading, photodiodes, presses};
+use super::tint::tinted;
 use super::traces::{ends, leaps, middle, repeated, traces};
 use crate::figure::{encode_png, png};
 use crate::files::Staging;
@@ -400,15 +401,16 @@ impl Job<'_> {
         }
         let names: Vec<String> = positions.photodiodes.iter().map(|one| one.name.clone()).collect();
         let time_s: Vec<f64> = kept.iter().map(|row| row.time_s).collect();
-        let (traces, whole) = traces(&names, kept, self.light);
-        let noise: Vec<Option<f64>> = traces.iter().map(|trace| noise_sd(&trace.values)).collect();
-        let lasting = sampler.noise_sd().unwrap_or(0.0);
         let quantizer = middle(quantizer.iter().copied());
         let enlarged = (beyond_fine(quantizer) / DOUBLED_BY).exp2();
-        let sd = |k: usize, one: &Sampled, se_px: f32| {
+        let (traces, whole) = traces(&names, kept, self.light, enlarged);
+        let noise: Vec<Option<f64>> = traces.iter().map(|trace| noise_sd(&trace.values)).collect();
+        let lasting = sampler.noise_sd().unwrap_or(0.0);
+        let sd = |k: usize, row: usize, one: &Sampled, se_px: f32| {
             // The place's error has two axes, the slope is along the steeper.
             let moved = f64::from(one.slope_per_px * se_px) / 2.0_f64.sqrt();
-            noise[k].map(|noise| (enlarged * noise.max(lasting)).hypot(one.steady_sd.into()).hypot(moved))
+            let tint = traces[k].tint[row];
+            noise[k].map(|noise| (enlarged * noise.max(lasting)).hypot(one.steady_sd.into()).hypot(moved).hypot(tint))
         };
         self.stages.time("write", || photodiodes(self.staging, self.outputs, &names, self.light, kept, sd))?;
         let skin: Vec<f64> = kept.iter().map(|row| row.skin).collect();
@@ -459,6 +461,7 @@ impl Job<'_> {
         report.warnings.extend(repeated(&traces, &noise, |row| kept[row].index));
         report.warnings.extend(leaps(&traces, |row| kept[row].index));
         report.warnings.extend(reversed(&pressed));
+        report.warnings.extend(tinted(traces.iter().map(|trace| (trace.name.as_str(), trace.tint.as_slice()))));
         if noise.iter().all(Option::is_none) {
             report.warnings.push("too few frames to know the photodiodes' noise: no standard errors".to_owned());
         }

@@ -6,4 +6,5 @@ pub(in crate::nailvideo) mod kind;
 pub(in crate::nailvideo) mod plan;
 pub(in crate::nailvideo) mod report;
 mod results;
+mod tint;
 mod traces;

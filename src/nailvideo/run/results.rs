@@ -138,14 +138,14 @@ impl CellTable {
     }
 }
 
-/// Writes `photodiodes.csv`; `sd` gives the standard error of a photodiode's reading in a frame.
+/// Writes `photodiodes.csv`; `sd` gives the standard error of a photodiode's reading in a row.
 pub(super) fn photodiodes(
     staging: &Staging,
     outputs: &Outputs,
     names: &[String],
     light: Light,
     kept: &[Kept],
-    sd: impl Fn(usize, &Sampled, f32) -> Option<f64>,
+    sd: impl Fn(usize, usize, &Sampled, f32) -> Option<f64>,
 ) -> Result<(), NailVideoError> {
     let value = |name: String| Column::rounded(name, decimals(light));
     let mut columns = vec![Column::integer("frame"), Column::rounded("time_s", TIME_DECIMALS)];
@@ -159,11 +159,11 @@ pub(super) fn photodiodes(
         ("sd", "standard error of one sample".to_owned()),
     ];
     let mut table = create(staging, outputs, "photodiodes", columns, &facts)?;
-    for row in kept {
+    for (at, row) in kept.iter().enumerate() {
         let reading = |k: usize| row.place.ok().and_then(|se| Some((row.readings.get(k)?.as_ref().ok()?, se)));
         let mut cells = vec![Value::Integer(row.index as i64), Value::Number(row.time_s)];
         cells.extend((0..names.len()).map(|k| Value::from(reading(k).map(|(one, _)| one.value))));
-        cells.extend((0..names.len()).map(|k| Value::from(reading(k).and_then(|(one, se)| sd(k, one, se)))));
+        cells.extend((0..names.len()).map(|k| Value::from(reading(k).and_then(|(one, se)| sd(k, at, one, se)))));
         cells.push(Value::Text(row.place.as_ref().map_or_else(|lost| lost.name(), |_| "ok")));
         cells.extend((0..names.len()).map(|k| match (&row.place, row.readings.get(k)) {
             (Err(_), _) | (Ok(_), None) => Value::Text("lost"),

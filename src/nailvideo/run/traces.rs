@@ -1,14 +1,16 @@
 //! From the rows that are kept of all frames to the traces in which presses are looked for.
 
 use super::results::Kept;
+use super::tint::{Ratios, tints};
 use crate::median::{ends as ends_of, median_of};
 use crate::nail::Positions;
 use crate::nailvideo::options::Light;
 use crate::nailvideo::press::Trace;
 use crate::nailvideo::sample::Sampled;
 
-/// Of each photodiode, and what a change of all light is in their unit.
-pub(super) fn traces(names: &[String], kept: &[Kept], light: Light) -> (Vec<Trace>, f64) {
+/// Of each photodiode, and what a change of all light is in their unit; `enlarged` is what compression multiplies their
+/// noise by.
+pub(super) fn traces(names: &[String], kept: &[Kept], light: Light, enlarged: f64) -> (Vec<Trace>, f64) {
     let read = |k: usize, of: &dyn Fn(&Sampled) -> f64| -> Vec<f64> {
         let reading = |row: &Kept| row.readings.get(k).and_then(|one| one.ok());
         kept.iter().map(|row| reading(row).map_or(f64::NAN, |one| of(&one))).collect()
@@ -19,8 +21,20 @@ pub(super) fn traces(names: &[String], kept: &[Kept], light: Light) -> (Vec<Trac
         Light::Red | Light::Skin => 100.0,
     };
     let red = |k: usize| read(k, &|one| whole * f64::from(one.red));
-    let trace = |(k, values): (usize, Vec<f64>)| Trace { name: names[k].clone(), values, red: red(k) };
-    (values.into_iter().enumerate().map(trace).collect(), whole)
+    let ratios = |k: usize| {
+        let [green, blue] = [0, 1].map(|of| read(k, &|one| 100.0 * f64::from(one.ratios[of])));
+        let [_, steady_sd] = ends_of(read(k, &|one| 100.0 / whole * f64::from(one.steady_sd)));
+        Ratios { green, blue, steady_sd }
+    };
+    let ratios: Vec<Ratios> = (0..names.len()).map(ratios).collect();
+    let tints = tints(&ratios, enlarged, light == Light::Skin);
+    let trace = |((k, values), tint): ((usize, Vec<f64>), Vec<f64>)| Trace {
+        name: names[k].clone(),
+        values,
+        red: red(k),
+        tint: tint.into_iter().map(|by| 0.01 * whole * by).collect(),
+    };
+    (values.into_iter().enumerate().zip(tints).map(trace).collect(), whole)
 }
 
 /// Means of the photodiodes toward each end of the nail, where all of them have a value.
@@ -32,7 +46,12 @@ pub(super) fn ends(positions: &Positions, traces: &[Trace]) -> Vec<Trace> {
             let rows = members.first().map_or(0, |t| of(t).len());
             (0..rows).map(|row| members.iter().map(|t| of(t)[row]).sum::<f64>() / members.len() as f64).collect()
         };
-        let trace = || Trace { name: name.to_owned(), values: mean(|t| &t.values), red: mean(|t| &t.red) };
+        let trace = || Trace {
+            name: name.to_owned(),
+            values: mean(|t| &t.values),
+            red: mean(|t| &t.red),
+            tint: mean(|t| &t.tint),
+        };
         (members.len() > 1).then(trace)
     };
     [end("distal", &|v| v > 0.0), end("proximal", &|v| v < 0.0)].into_iter().flatten().collect()
@@ -129,6 +148,7 @@ mod tests {
             // Encoded again, a value moves a little.
             values: (0..150).map(|frame| of(shown(frame)) + 1e-3 * (frame % 3) as f64).collect(),
             red: Vec::new(),
+            tint: Vec::new(),
         };
         let traces = [
             trace("P1", &|k| press(k) + noise(k)),
@@ -146,7 +166,7 @@ mod tests {
             let press = |k: usize| 20.0 * (1.0 - (-(k.saturating_sub(60) as f64) / 6.0).exp());
             let traces = [1.0, -0.5, 0.7].map(|by| {
                 let values = (0..150).map(|frame| by * press(shown(frame)) + noise(frame)).collect();
-                Trace { name: "P1".to_owned(), values, red: Vec::new() }
+                Trace { name: "P1".to_owned(), values, red: Vec::new(), tint: Vec::new() }
             });
             leaps(&traces, |row| row as u64)
         };

@@ -96,6 +96,8 @@ pub(in crate::nailvideo) struct Sampled {
     pub(in crate::nailvideo) value: f64,
     /// The logarithm of red, less what the light changed; NaN in a grey video.
     pub(in crate::nailvideo) red: f32,
+    /// The logarithms of green and of blue over red; NaN in a grey video.
+    pub(in crate::nailvideo) ratios: [f32; 2],
     /// How much it changes when the region is off by a pixel, across and down the picture.
     pub(in crate::nailvideo) slope_per_px: f32,
     /// Its error by the encoder's steps of chroma, by the blur between samples and by what both take off a change, SD:
@@ -303,10 +305,12 @@ impl Sampler {
         }
         let value = value_of(self.light, rgb, skin);
         let Shape { slope_per_px, blurred } = watched.shape;
+        let [red, green, blue] = logs(rgb).filter(|_| !self.grey).unwrap_or([f64::NAN; 3]);
         let of_light = light.filter(|_| !self.grey).map_or(f64::NAN, |light| light[0]);
         let sampled = Sampled {
             value,
-            red: (rgb[0].ln() - of_light) as f32,
+            red: (red - of_light) as f32,
+            ratios: [green as f32, blue as f32],
             slope_per_px: slope_per_px as f32,
             steady_sd: watched.chroma_sd.hypot(blurred).hypot(watched.change_sd * (value - watched.first_value)) as f32,
         };
