@@ -46,9 +46,8 @@ const LEAST_SD: f64 = 2.0;
 const LEAST_APART: f64 = 2.5;
 /// ... and so many levels, in all planes together.
 const LEAST_CONTRAST: f64 = 8.0;
-/// Area of an outline over what is expected: as it was lately, as first learnt, and as found by the search.
+/// Area of an outline over what is expected: as it was lately, and as found by the search.
 const AREA_RANGE: (f64, f64) = (0.75, 1.35);
-const LEARNT_AREA_RANGE: (f64, f64) = (0.55, 2.0);
 const FOUND_AREA_RANGE: (f64, f64) = (0.35, 5.0);
 /// Radii of marks, as shares of the picture's width.
 const SIZES: [f64; 4] = [0.005, 0.008, 0.013, 0.02];
@@ -181,10 +180,9 @@ impl Blot {
         let mut outline = last?;
         let level: f64 = (0..3).map(|p| self.toward[p] * (outline.marker[p] - outline.background[p])).sum();
         let whole = in_range(outline.area_px2 / self.area_px2, AREA_RANGE)
-            && in_range(outline.area_px2 / self.learnt_px2, LEARNT_AREA_RANGE)
             && in_range(level, LEVEL_RANGE)
             && outline.spread_px2()[0] <= 1.6 * self.spread_px2[0];
-        let cut = ((outline.area_px2 / self.area_px2).ln().abs() - AREA_FREE).max(0.0) * CUT_RADII * radius_px;
+        let cut = cut_px((outline.area_px2 / self.area_px2).ln().abs() - AREA_FREE, radius_px);
         outline.lasting_px2[0] += cut * cut;
         outline.lasting_px2[2] += cut * cut;
         if whole { Ok(outline) } else { Err(Loss::Hidden) }
@@ -195,6 +193,16 @@ impl Blot {
         (self.spread_px2[0] / self.spread_px2[1]).sqrt()
     }
 
+    /// How much larger an outline is than the first one, as the logarithm of its area.
+    pub(crate) fn growth(&self, outline: &Outline) -> f64 {
+        (outline.area_px2 / self.learnt_px2).ln()
+    }
+
+    /// Keeps the size that was first learnt of the same mark.
+    pub(crate) fn keep_size(&mut self, before: &Self) {
+        self.learnt_px2 = before.learnt_px2;
+    }
+
     /// Takes over what the mark looked like in another frame.
     pub(crate) fn update(&mut self, outline: &Outline) {
         let toward = |old: &mut f64, new: f64| *old += SHARE * (new - *old);
@@ -202,6 +210,12 @@ impl Blot {
         let spread = outline.spread_px2();
         (0..2).for_each(|k| toward(&mut self.spread_px2[k], spread[k]));
     }
+}
+
+/// How far the centre may be off where the area of a mark of such a radius differs by so much (logarithm) more than
+/// that of a whole one does.
+pub(crate) fn cut_px(change: f64, radius_px: f64) -> f64 {
+    change.max(0.0) * CUT_RADII * radius_px
 }
 
 fn in_range(value: f64, (least, most): (f64, f64)) -> bool {

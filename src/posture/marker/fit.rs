@@ -25,3 +25,13 @@ pub(crate) struct Fit {
     /// What a blot's centre is the centroid of; none for a disc.
     pub(crate) outline: Option<Outline>,
 }
+
+impl Fit {
+    /// Its centre may be off by so much either way for as long as the marker looks so.
+    pub(crate) fn doubt(&mut self, sd_px: f64) {
+        for axis in [0, 2] {
+            self.centre.covariance_px2[axis] += sd_px * sd_px;
+            self.centre.lasting_px2[axis] += sd_px * sd_px;
+        }
+    }
+}

@@ -7,6 +7,7 @@
 //! about as well; till then it is lost. Markers that can't be distinguished for a while are both lost.
 
 mod agree;
+mod covered;
 mod loose;
 mod regain;
 mod target;
@@ -156,6 +157,7 @@ impl Tracker {
         agree::settle(&mut self.targets, &self.rods, &self.alike);
         self.doubt_a_cut();
         self.regain(frame);
+        covered::doubt(&mut self.targets, &self.lone);
         agree::learn(&self.targets, &mut self.rods);
         // A thing by itself may be no disc: its trembling says nothing of the others'.
         let discs = self.targets.iter().zip(&self.lone);

@@ -336,13 +336,15 @@ fn take_back(
         Some(Look { blot: Some(_), .. }) => Look::learn_blot(frame, siting, blob.at_px, blob.radius_px()),
         _ => Look::learn(frame, siting, blob.at_px, blob.radius_px(), scratch),
     };
-    let Some(new) = new else { return };
+    let Some(mut new) = new else { return };
     if let Some(old) = &target.look {
         let ratio = new.radius_px / old.radius_px;
         let alike = paint.seen_as(old.marker).is_like(&paint.seen_as(new.marker), super::ALIKE_RAD);
         if ratio < range.0 || ratio > range.1 || !alike {
             return;
         }
+        // It may be a part that is seen again, the rest still hidden.
+        new.keep_size(old);
     }
     if let Ok(fit) = centre(frame, siting, &new, blob.at_px, scratch)
         && near(fit.centre.at_px)

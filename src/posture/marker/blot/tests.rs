@@ -55,41 +55,59 @@ fn finger(frame: u64) -> Stage {
     stage
 }
 
+/// An angle's error and its standard errors, that of noise and outline and that of the outline alone.
+#[derive(Debug, Clone, Copy)]
+struct Miss {
+    error_deg: f64,
+    sd_deg: f64,
+    lasting_sd_deg: f64,
+}
+
+/// What 60 frames show of both joints, each frame's first four blots being the marks; none where an angle is missing.
+fn followed(text: &str, stage: impl Fn(u64) -> Stage) -> (Vec<[Option<Miss>; 2]>, Tracker) {
+    let layout = Layout::parse(text, Path::new("markers.toml")).unwrap();
+    let info = stage(0).info();
+    let pictures: Vec<_> = (0..60).map(|frame| stage(frame).picture(frame)).collect();
+    let mut surveyor = Surveyor::new(&layout, &info);
+    for (k, picture) in pictures.iter().enumerate() {
+        if surveyor.look(&picture.frame(k as u64, 0.0)) == Progress::Enough {
+            break;
+        }
+    }
+    let survey = surveyor.finish().unwrap();
+    let mut tracker = Tracker::new(&layout, &survey, &info, Method::default());
+    let (mut angles, mut real) = (Angles::new(&layout, &info), Angles::new(&layout, &info));
+    let mut misses = Vec::new();
+    for (k, picture) in pictures.iter().enumerate() {
+        let seen = angles.step(tracker.step(&picture.frame(k as u64, 0.0)));
+        let centres: Vec<Sight> = (stage(k as u64).blots[..4].iter())
+            .map(|blot| {
+                let at_px = blot.centroid();
+                Sight::Seen(Centre { at_px, covariance_px2: [0.0; 3], lasting_px2: [0.0; 3], radius_px: 10.0 })
+            })
+            .collect();
+        let real = real.step(&centres);
+        misses.push([0, 1].map(|joint| {
+            let seen = seen.angles[joint]?;
+            Some(Miss {
+                error_deg: (seen.rad - real.angles[joint].unwrap().rad).abs().to_degrees(),
+                sd_deg: seen.sd_rad.to_degrees(),
+                lasting_sd_deg: seen.lasting_sd_rad.to_degrees(),
+            })
+        }));
+    }
+    (misses, tracker)
+}
+
 #[test]
 fn angles_between_blots_are_right_within_their_standard_errors() {
     for (text, shape) in [(MARKS.to_owned(), "left open"), (format!("shape = \"blot\"\n{MARKS}"), "said")] {
-        let layout = Layout::parse(&text, Path::new("markers.toml")).unwrap();
-        let info = finger(0).info();
-        let pictures: Vec<_> = (0..60).map(|frame| finger(frame).picture(frame)).collect();
-        let mut surveyor = Surveyor::new(&layout, &info);
-        for (k, picture) in pictures.iter().enumerate() {
-            if surveyor.look(&picture.frame(k as u64, 0.0)) == Progress::Enough {
-                break;
-            }
-        }
-        let survey = surveyor.finish().unwrap();
-        let mut tracker = Tracker::new(&layout, &survey, &info, Method::default());
-        let (mut angles, mut real) = (Angles::new(&layout, &info), Angles::new(&layout, &info));
-        let (mut errors_deg, mut within, mut missing) = (Vec::new(), 0, 0);
-        for (k, picture) in pictures.iter().enumerate() {
-            let seen = angles.step(tracker.step(&picture.frame(k as u64, 0.0)));
-            let centres: Vec<Sight> = (finger(k as u64).blots.iter())
-                .map(|blot| {
-                    let at_px = blot.centroid();
-                    Sight::Seen(Centre { at_px, covariance_px2: [0.0; 3], lasting_px2: [0.0; 3], radius_px: 10.0 })
-                })
-                .collect();
-            for (seen, real) in seen.angles.iter().zip(&real.step(&centres).angles) {
-                let Some(seen) = seen else {
-                    missing += 1;
-                    continue;
-                };
-                let error = (seen.rad - real.unwrap().rad).abs();
-                errors_deg.push(error.to_degrees());
-                within += usize::from(error <= seen.sd_rad);
-                assert!(seen.lasting_sd_rad > 0.0 && seen.lasting_sd_rad < seen.sd_rad);
-            }
-        }
+        let (misses, tracker) = followed(&text, finger);
+        let seen: Vec<Miss> = misses.iter().flatten().flatten().copied().collect();
+        let missing = 2 * misses.len() - seen.len();
+        let within = seen.iter().filter(|miss| miss.error_deg <= miss.sd_deg).count();
+        assert!(seen.iter().all(|miss| miss.lasting_sd_deg > 0.0 && miss.lasting_sd_deg < miss.sd_deg));
+        let mut errors_deg: Vec<f64> = seen.iter().map(|miss| miss.error_deg).collect();
         errors_deg.sort_by(f64::total_cmp);
         let share = within as f64 / errors_deg.len() as f64;
         let median = errors_deg[errors_deg.len() / 2];
@@ -102,6 +120,44 @@ fn angles_between_blots_are_right_within_their_standard_errors() {
         // No skin bends here, which the standard errors allow for.
         assert!(share >= 0.6, "{share}");
     }
+}
+
+#[test]
+fn what_is_covered_slowly_has_a_larger_standard_error_and_then_no_centre() {
+    let (misses, _) = followed(MARKS, |frame| {
+        let mut stage = finger(frame);
+        let [x, y] = stage.blots[1].at;
+        let cover =
+            stage::Blot { at: [x, y + 62.0 - 0.5 * frame as f64], radius: 40.0, colour: SKIN, ..stage.blots[1] };
+        stage.blots.push(cover);
+        stage
+    });
+    let first: Vec<Option<Miss>> = misses.iter().map(|joints| joints[0]).collect();
+    let seen: Vec<Miss> = first.iter().flatten().copied().collect();
+    let far = seen.iter().filter(|miss| miss.error_deg > 3.0 * miss.sd_deg).count();
+    let most = seen.iter().map(|miss| miss.error_deg).fold(0.0, f64::max);
+    println!("{} seen, {far} beyond three standard errors, at most {most:.2} degrees off", seen.len());
+    assert!(most > 1.0, "it is not covered by much: {most} degrees");
+    assert!(20 * far <= seen.len(), "{far} of {}", seen.len());
+    assert!(first[55..].iter().all(Option::is_none), "{:?}", &first[55..]);
+}
+
+#[test]
+fn marks_that_all_become_smaller_are_whole() {
+    let (misses, _) = followed(MARKS, |frame| {
+        let mut stage = finger(frame);
+        let zoom = 1.0 - 0.3 * frame as f64 / 59.0;
+        for blot in &mut stage.blots {
+            blot.at = [160.0 + zoom * (blot.at[0] - 160.0), 110.0 + zoom * (blot.at[1] - 110.0)];
+            blot.radius *= zoom;
+        }
+        stage
+    });
+    let seen: Vec<Miss> = misses.iter().flatten().flatten().copied().collect();
+    let most = seen.iter().map(|miss| miss.sd_deg).fold(0.0, f64::max);
+    println!("{} seen, standard errors up to {most:.2} degrees", seen.len());
+    assert!(seen.len() >= 118, "{} of 120", seen.len());
+    assert!(most <= 0.3, "{most} degrees");
 }
 
 #[test]

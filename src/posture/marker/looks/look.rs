@@ -68,6 +68,13 @@ impl Look {
         if self.blot.is_some() { of.seen_on(self.marker, self.background) } else { of.seen_as(self.marker) }
     }
 
+    /// Keeps the size that a blot had when it was first learnt, whatever light it is in now.
+    pub(crate) fn keep_size(&mut self, before: &Self) {
+        if let (Some(blot), Some(before)) = (&mut self.blot, &before.blot) {
+            blot.keep_size(before);
+        }
+    }
+
     /// Takes over what the marker looked like in another frame.
     pub(crate) fn update(&mut self, fit: &Fit) {
         let toward = |old: &mut f64, new: f64| *old += SHARE * (new - *old);
