@@ -5,8 +5,8 @@
 //!   `2021/10/21 09:20:58`, `21.10.2021 09:20:58,216`; with or without a zone, down to nanoseconds;
 //! - as American and MATLAB's programs write them: `10/21/2021 9:20:58.216 AM`, `21-Oct-2021 09:20:58`. Where the first
 //!   is `10/11/2021`, nobody can tell which is the month, and it is refused;
-//! - times of day: `09:20:58.216`, `9:20:58 AM`; one that lies nearer to the last stamp on another day is taken to be on
-//!   that day, so that time goes on over midnight.
+//! - times of day: `09:20:58.216`, `9:20:58 AM`; one that lies nearer to the last stamp on another day is taken to be
+//!   on that day, so that time goes on over midnight.
 //!
 //! Out: seconds, and the midnight of the wall clock before the first stamp. The first stamp says which kind they all
 //! are.

@@ -253,8 +253,8 @@ impl Predictor {
         }
     }
 
-    /// Whether it lies so far outside that no answer is to be acted on: a voltage more than a tenth of its range beyond,
-    /// as where a cable is loose.
+    /// Whether it lies so far outside that nothing is to be done by the answer, as where a cable is loose: a voltage
+    /// more than a tenth of its range beyond.
     #[must_use]
     pub fn is_far_outside(&self, x: &[f64]) -> bool {
         match &self.model {

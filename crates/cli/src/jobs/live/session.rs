@@ -32,7 +32,7 @@ use crate::{Common, Outcome, out};
 #[derive(Debug, Args)]
 #[command(mut_arg("port", |one| one.requires("serve")), mut_arg("open", |one| one.requires("serve")))]
 #[command(mut_arg("listen", |one| one.requires("serve")), mut_arg("results", |one| one.requires("serve")))]
-#[command(mut_arg("json", |json| json.help("Print messages and the report as JSON, an object a line, on standard error")))]
+#[command(mut_arg("json", |json| json.help("Messages and the report as JSON, an object a line, on standard error")))]
 pub(crate) struct LiveArgs {
     /// Models that `lunula train` wrote: of force, of posture, or both; index=MODEL.json is one finger's
     #[arg(long = "model", required = true, value_name = "[FINGER=]MODEL.json", num_args = 1..)]
