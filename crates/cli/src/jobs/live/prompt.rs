@@ -151,7 +151,7 @@ fn ended(common: &Common, report: &PromptReport) -> Outcome {
         let off = step.rms_n.map_or("-".to_owned(), |rms_n| format!("{rms_n:.2}"));
         common.say(&format!("{}: {off} N off the prompt (RMS), a person's lag included", step.step));
     }
-    common.say(&format!("{:.0} % of the cone's {} cells", 100.0 * covered.visited, covered.cells));
+    common.say(&format!("{:.0} % of the cone's {} cells", (100.0 * covered.visited).floor(), covered.cells));
     if let (Some(extra), Some(file)) = (&report.extra, &report.extra_file) {
         let [before, after] = [extra.before, extra.after].map(|share| (100.0 * share).floor());
         let file = file.display();
