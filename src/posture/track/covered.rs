@@ -12,9 +12,9 @@ use crate::posture::marker::sight::Loss;
 /// Area over what it would be had the blot grown like the others; beyond, it is lost (0.55: half hidden; both assumed).
 const AREA_RANGE: (f64, f64) = (0.55, 2.0);
 
-/// The area of a whole blot changes, against the others, by what moves its edge by this much: on six phantoms of a row
-/// of four (`--layout row`, default, clean, hard, fast, small, and `--layout paint`; radii of 2.9 to 16 px) 99 % of the
-/// frames are within 0.09 to 0.23 px.
+/// The area of a whole blot changes, against the others, by what moves its edge by this much: on six phantoms of seed 1
+/// (`--layout row` as it is and with `--scene clean`, `hard`, `fast`, `small`; `--layout paint`; radii of 2.9 to 16 px)
+/// 99 % of a mark's frames are within 0.06 to 0.25 px.
 const EDGE_FREE_PX: f64 = 0.2;
 /// ... and by this logarithm, as skin stretches (assumed).
 const STRETCH_FREE: f64 = 0.05;

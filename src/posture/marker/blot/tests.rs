@@ -128,7 +128,7 @@ fn what_is_covered_slowly_has_a_larger_standard_error_and_then_no_centre() {
         let mut stage = finger(frame);
         let [x, y] = stage.blots[1].at;
         let cover =
-            stage::Blot { at: [x, y + 62.0 - 0.5 * frame as f64], radius: 40.0, colour: SKIN, ..stage.blots[1] };
+            stage::Blot { at: [x, y + 52.0 - 0.5 * frame as f64], radius: 40.0, colour: SKIN, ..stage.blots[1] };
         stage.blots.push(cover);
         stage
     });
@@ -146,7 +146,7 @@ fn what_is_covered_slowly_has_a_larger_standard_error_and_then_no_centre() {
 fn marks_that_all_become_smaller_are_whole() {
     let (misses, _) = followed(MARKS, |frame| {
         let mut stage = finger(frame);
-        let zoom = 1.0 - 0.3 * frame as f64 / 59.0;
+        let zoom = 1.0 - 0.15 * frame as f64 / 59.0;
         for blot in &mut stage.blots {
             blot.at = [160.0 + zoom * (blot.at[0] - 160.0), 110.0 + zoom * (blot.at[1] - 110.0)];
             blot.radius *= zoom;
