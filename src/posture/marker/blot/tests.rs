@@ -143,24 +143,6 @@ fn what_is_covered_slowly_has_a_larger_standard_error_and_then_no_centre() {
 }
 
 #[test]
-fn marks_that_all_become_smaller_are_whole() {
-    let (misses, _) = followed(MARKS, |frame| {
-        let mut stage = finger(frame);
-        let zoom = 1.0 - 0.15 * frame as f64 / 59.0;
-        for blot in &mut stage.blots {
-            blot.at = [160.0 + zoom * (blot.at[0] - 160.0), 110.0 + zoom * (blot.at[1] - 110.0)];
-            blot.radius *= zoom;
-        }
-        stage
-    });
-    let seen: Vec<Miss> = misses.iter().flatten().flatten().copied().collect();
-    let most = seen.iter().map(|miss| miss.sd_deg).fold(0.0, f64::max);
-    println!("{} seen, standard errors up to {most:.2} degrees", seen.len());
-    assert!(seen.len() >= 118, "{} of 120", seen.len());
-    assert!(most <= 0.3, "{most} degrees");
-}
-
-#[test]
 fn what_is_hidden_in_part_has_no_centre() {
     let mut stage = finger(0);
     let picture = stage.picture(1);
