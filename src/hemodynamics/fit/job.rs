@@ -236,7 +236,8 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
         ));
     }
     for one in &result.undetermined {
-        let weights: Vec<String> = one.weights.iter().map(|(name, weight)| format!("{weight:+.2} {name}")).collect();
+        let weights = one.weights.iter().filter(|(_, weight)| weight.is_finite());
+        let weights: Vec<String> = weights.map(|(name, weight)| format!("{weight:+.2} {name}")).collect();
         warnings.push(format!("the recordings don't determine {}; hold one of these", weights.join(" ")));
     }
     for group in result.groups.iter().filter(|group| group.at_bound.is_some()) {

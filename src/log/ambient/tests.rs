@@ -312,7 +312,7 @@ fn phases(each: usize, late: f64, shifted: usize) -> Log {
     let on = |k: usize| (k / each) % 2 == 1;
     let level = |k: usize| if on(k) { 1.5 + 0.1 * (0.001 * k as f64).sin() } else { 0.5 };
     let settling = |k: usize| {
-        let by = if k % each == 0 && k > 0 { late * (level(k - 1) - level(k)) } else { 0.0 };
+        let by = if k > 0 && k.is_multiple_of(each) { late * (level(k - 1) - level(k)) } else { 0.0 };
         level(k) + by + 0.002 * ((k * 7919) % 13) as f64 / 13.0
     };
     let rows = 40 * each;
