@@ -173,6 +173,7 @@ mod tests {
         sort_by_pose(&mut poses, |pose| pose);
         assert_eq!(poses, ["nominal", "normal", "extension", "flexion", "Normal", "relaxed"]);
     }
+
     #[test]
     fn people_in_place_of_poses_are_named_by_their_cameras_names() {
         let said = |names: &[(&str, &str)]| doubts(|| names.iter().copied()).join("; ");
