@@ -163,12 +163,12 @@ pub(crate) fn alternating<'a>(photodiodes: impl Iterator<Item = (&'a str, &'a [f
 pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
     let mut leaping = Vec::new();
     let of = |(name, values): (&str, &[f64])| {
-        if let Some(leaps) = leaps(name, values) {
+        let [least, greatest] = without_spikes(values);
+        let range = greatest - least;
+        if let Some(leaps) = leaps(name, values, range) {
             leaping.push(leaps);
             return None;
         }
-        let [least, greatest] = without_spikes(values);
-        let range = greatest - least;
         let beyond = |value: f64| (least - value).max(value - greatest);
         let alone = |row: usize| {
             let beside = [row.checked_sub(1), Some(row + 1)].into_iter().flatten();

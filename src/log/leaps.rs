@@ -7,7 +7,6 @@
 //! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step.
 
 use super::lines::order::short;
-use super::rest::without_spikes;
 
 /// So many rows make a fault; fewer are named as [glitches](super::doubts::glitches).
 const ROWS: usize = 3;
@@ -22,15 +21,15 @@ const LEAST_STEPS: usize = 50;
 /// What a column does in single rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Leaps {
-    pub(super) name: String,
+    name: String,
     rows: usize,
     /// Where most of them leap to exactly.
     to: f64,
     there: usize,
 }
 
-/// The leaps of a column, where there are so many.
-pub(super) fn leaps(name: &str, values: &[f64]) -> Option<Leaps> {
+/// The leaps of a column, where there are so many; `range` is that of its values but for spikes.
+pub(super) fn leaps(name: &str, values: &[f64], range: f64) -> Option<Leaps> {
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let mut steps: Vec<f64> = steps.filter(|step| step.is_finite() && *step > 0.0).collect();
     if steps.len() < LEAST_STEPS {
@@ -38,8 +37,7 @@ pub(super) fn leaps(name: &str, values: &[f64]) -> Option<Leaps> {
     }
     let at = 9 * steps.len() / 10;
     let usual = *steps.select_nth_unstable_by(at, f64::total_cmp).1;
-    let [least, greatest] = without_spikes(values);
-    let far = (STEPS * usual).max(RANGE * (greatest - least));
+    let far = (STEPS * usual).max(RANGE * range);
     let leaps = |row: &[f64]| {
         let leap = (row[1] - row[0]).abs().min((row[1] - row[2]).abs());
         leap > far && (row[2] - row[0]).abs() < BACK * leap
@@ -72,6 +70,7 @@ pub(super) fn leaping(columns: &[Leaps]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::rest::without_spikes;
 
     /// A photodiode of a finger that presses and lets go, in steps of a converter.
     fn volts(k: usize) -> f64 {
@@ -82,7 +81,8 @@ mod tests {
 
     fn said(of: impl Fn(usize) -> f64) -> Option<String> {
         let values: Vec<f64> = (0..3000).map(of).collect();
-        leaping(&leaps("P1", &values).into_iter().collect::<Vec<_>>())
+        let [least, greatest] = without_spikes(&values);
+        leaping(&leaps("P1", &values, greatest - least).into_iter().collect::<Vec<_>>())
     }
 
     #[test]

@@ -32,20 +32,21 @@ pub(super) fn open_stream(
         columns: options.names.clone(),
         host_start_unix_s: since_1970.map(|since| since.as_secs_f64() - 1e-9 * now_ns as f64),
     };
-    let is_table = matches!(&source.place, Place::File { path, .. } if is_parquet(path) || is_xdf(path));
-    if options.names.is_some() && (is_table || matches!(source.place, Place::Phantom { .. })) {
-        let what = "its columns have names of their own; leave --names out".to_owned();
-        return Err(LiveError::Source { place: source.to_string(), what });
-    }
+    let named = |what: String| LiveError::Source { place: source.to_string(), what };
+    let has_names = || match options.names {
+        None => Ok(()),
+        Some(_) => Err(named("its columns have names of their own; leave --names out".to_owned())),
+    };
     match &source.place {
         Place::File { path, pace, looped } if is_parquet(path) || is_xdf(path) => {
+            has_names()?;
             let rows = if is_xdf(path) { TableRows::of_xdf(path, &options.log)? } else { TableRows::read(path)? };
             let rows = Box::new(rows);
             let name = source.to_string();
             Ok(Stream::of_rows(name, rows, (*pace, *looped), source.volts_per_count, &wire, naming))
         }
         Place::Phantom { kind, settings, pace } => {
-            let named = |what: String| LiveError::Source { place: source.to_string(), what };
+            has_names()?;
             let rows = Box::new(PhantomRows::new(kind, settings).map_err(named)?);
             Ok(Stream::of_rows(source.to_string(), rows, (*pace, false), source.volts_per_count, &wire, naming))
         }

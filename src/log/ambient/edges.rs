@@ -7,7 +7,7 @@
 //!
 //! Measured on phantom logs of ten rows a phase: `led` a row late took R2 of the forces from 0.97 to 0.63; of five rows
 //! a phase, of which the first is settled by 80 %, Fy from 0.96 to 0.59. As they should be, first and last rows are
-//! within 0.002 of their phase.
+//! within 0.0001 of their phase in the median (12 logs of three persons, of 3, 5 and 10 rows a phase).
 
 use crate::log::Channel;
 use crate::median::median_of;

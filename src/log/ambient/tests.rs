@@ -307,7 +307,8 @@ proptest! {
     }
 }
 
-/// Ten phases of `each` rows on, as many off, at 1 kHz; in the first row of each, the light is `late` of the way back.
+/// Twenty phases of `each` rows on, as many off, at 1 kHz; in the first row of each the light is `late` of the way
+/// back.
 fn phases(each: usize, late: f64, shifted: usize) -> Log {
     let on = |k: usize| (k / each) % 2 == 1;
     let level = |k: usize| if on(k) { 1.5 + 0.1 * (0.001 * k as f64).sin() } else { 0.5 };

@@ -239,20 +239,23 @@ fn other_date(text: &str, day_first: &mut Option<bool>) -> Result<DateTime, &'st
     let of = |formats: [&str; 2]| {
         formats.iter().find_map(|format| BrokenDownTime::parse(format, text).ok()?.to_datetime().ok())
     };
-    match (*day_first, of(DAY_FIRST), of(MONTH_FIRST)) {
-        (None, Some(day), Some(month)) if day != month => Err("; day and month can't be told apart"),
-        (None | Some(true), Some(date), None) | (Some(true), Some(date), Some(_)) => {
-            *day_first = Some(true);
-            Ok(date)
-        }
-        (None | Some(false), None, Some(date)) | (Some(false), Some(_), Some(date)) => {
-            *day_first = Some(false);
-            Ok(date)
-        }
-        (None, Some(date), Some(_)) => Ok(date),
-        (Some(_), ..) if text.contains('/') => Err("; its day and month are the other way round than in the first row"),
-        _ => of(MATLAB).ok_or(""),
+    if !text.contains('/') {
+        return of(MATLAB).ok_or("");
     }
+    if let Some(is_day_first) = *day_first {
+        let own = if is_day_first { DAY_FIRST } else { MONTH_FIRST };
+        return of(own).ok_or("; its day and month are the other way round than in the first row");
+    }
+    let (date, is_day_first) = match (of(DAY_FIRST), of(MONTH_FIRST)) {
+        (Some(day), Some(month)) if day != month => return Err("; day and month can't be told apart"),
+        // The same either way, it says nothing of the next one.
+        (Some(date), Some(_)) => return Ok(date),
+        (Some(date), None) => (date, true),
+        (None, Some(date)) => (date, false),
+        (None, None) => return Err(""),
+    };
+    *day_first = Some(is_day_first);
+    Ok(date)
 }
 
 fn unknown(cell: &[u8]) -> String {

@@ -81,9 +81,9 @@ impl Cut {
         let first = *frames.first().filter(|_| frames.len() <= CUTS)?;
         let most_rad = self.leaps.iter().map(|(_, by_rad)| *by_rad).fold(0.0, f64::max);
         Some(format!(
-            "angles leap by up to {:.0} degrees from one frame to the next, in {} place(s), the first \
-             before frame {first}: was the video cut, joined of several, or a marker stuck on \
-             again? Times after a cut are not the film's, and angles by another place of a marker not those before",
+            "angles leap by up to {:.0} degrees from one frame to the next, in {} place(s), the first before frame \
+             {first}: was the video cut, joined of several, or a marker stuck on again? Times after a cut are not the \
+             film's, and angles by another place of a marker not those before",
             most_rad.to_degrees(),
             frames.len()
         ))

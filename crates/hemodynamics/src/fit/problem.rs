@@ -217,8 +217,8 @@ impl<'a> Problem<'a> {
         }
         let found = self.assemble(at, parameters, signals, columns, &speeds);
         let calibrated = found.fitted.iter().flat_map(|one| [one.offset_v, one.scaling_v]);
-        let numbers = found.residuals.iter().chain(found.columns.iter().flatten()).copied().chain(calibrated);
-        if numbers.into_iter().any(|value| !value.is_finite()) {
+        let mut numbers = found.residuals.iter().chain(found.columns.iter().flatten()).copied().chain(calibrated);
+        if numbers.any(|value| !value.is_finite()) {
             return Err((0, "a photodiode hardly changes, so that its scaling grows out of all numbers".to_owned()));
         }
         Ok(found)
