@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::align::run::results::{ANGLE_DECIMALS, TEXTS};
+use crate::log::is_filmed;
 use crate::table::{Column, ColumnKind, Table, TableError, TableWriter, Value};
 
 /// Why sets were not joined.
@@ -121,10 +122,8 @@ impl Set {
     fn read(path: &Path) -> Result<Option<Self>, TableError> {
         let table = Table::read(path)?;
         let times_s = table.numbers("time_s")?;
-        let beyond =
-            |status: &Option<String>| matches!(status.as_deref(), Some("before the video" | "after the video"));
         let filmed: Vec<bool> = match table.has("label_status") {
-            true => table.texts("label_status")?.iter().map(|status| !beyond(status)).collect(),
+            true => table.texts("label_status")?.iter().map(|status| status.as_deref().is_none_or(is_filmed)).collect(),
             false => vec![true; times_s.len()],
         };
         let any = filmed.contains(&true);

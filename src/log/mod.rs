@@ -37,7 +37,7 @@ pub use ambient::{AmbientError, AmbientOptions, AmbientRule, Samples, samples};
 pub(crate) use ambient::{PRECEDING_RULE, Preceding, Standing, Still, piles};
 pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
 pub use lines::stamps::TimeUnit;
-pub(crate) use lines::status::{Statuses, Unknown, Verdict, without_faults};
+pub(crate) use lines::status::{Statuses, Unknown, Verdict, is_filmed, lacks_label, without_faults};
 pub use naming::columns::Columns;
 pub(crate) use naming::guess::is_force_in_another_unit;
 pub use naming::header::LogHeader;

@@ -1,5 +1,5 @@
 //! What align writes into `sensor_status`: `ok`, `saturated: P1, P3`, `no ambient: P2`, `no ambient` (of all), several
-//! joined by `; `.
+//! joined by `; `; and into `label_status`: `ok`, `before the video`, `after the video`, `gap: J1 J3`.
 
 use std::collections::HashSet;
 
@@ -109,9 +109,30 @@ pub(crate) fn without_faults<E>(
     Ok((all.into_iter().map(|(.., faults)| faults).collect(), unknown))
 }
 
+/// Whether a `label_status` says that the row lies within the video.
+pub(crate) fn is_filmed(status: &str) -> bool {
+    !matches!(status, "before the video" | "after the video")
+}
+
+/// Whether a `label_status` says that the row has no angle of a joint.
+pub(crate) fn lacks_label(status: &str, joint: &str) -> bool {
+    let in_gap = || status.strip_prefix("gap:").is_some_and(|joints| joints.split_whitespace().any(|one| one == joint));
+    !is_filmed(status) || in_gap()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_status_names_the_joints_that_have_no_angle() {
+        for status in ["before the video", "after the video", "gap: J1 J2", "gap: J2"] {
+            assert!(lacks_label(status, "J2"), "{status}");
+        }
+        for status in ["ok", "", "gap: J1 J3", "gap:", "J2 is there"] {
+            assert!(!lacks_label(status, "J2"), "{status}");
+        }
+    }
 
     #[test]
     fn a_status_counts_for_the_photodiodes_in_use() {

@@ -67,6 +67,13 @@ pub(crate) fn missing(name: &str, names: &[String]) -> String {
         let stem = other.len() >= 2 && (name.starts_with(&other) || other.starts_with(&name));
         strsim::normalized_damerau_levenshtein(&other, &name) + if stem { 0.5 } else { 0.0 }
     };
+    if number(name).is_some() && names.iter().any(|name| name == "P0") {
+        return format!(
+            "has no column `{name}`. Photodiodes are counted from 1: where `P0` is the first, call them P1, P2, .. in \
+             this order. {}",
+            listed(names, MOST)
+        );
+    }
     // P3 is not P4 written wrongly, nor Fx_N Fz_N.
     let both = |is: fn(&str) -> bool, other: &str| is(name) && is(other);
     let another = |other: &str| both(|n| number(n).is_some(), other) || both(|n| FORCES.contains(&n), other);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::columns::{cell, cells, listed, missing, other_grid, photodiodes};
 use super::{DataError, Wanted};
 use crate::flexion;
-use crate::log::{Channel, GROUPS, LitRows, Statuses, Unknown, Verdict, doubts, time_not_read};
+use crate::log::{Channel, GROUPS, LitRows, Statuses, Unknown, Verdict, doubts, lacks_label, time_not_read};
 use crate::table::{Cell, Table, TableError};
 
 /// The rows of a file, all of them.
@@ -102,6 +102,9 @@ impl Source {
         if has("sensor_status") {
             source.read_status(|take| table.each_text("sensor_status", take))?;
         }
+        if has("label_status") {
+            source.without_filled_labels(&table, &wanted.targets)?;
+        }
         let read = source.inputs.iter().zip(&source.x).chain(wanted.targets.iter().zip(&source.y));
         let read = read.map(|(name, values)| (name.as_str(), &values[..]));
         if let Some(name) = time_not_read(names) {
@@ -174,6 +177,31 @@ impl Source {
             Ok(())
         })?;
         Ok(source)
+    }
+
+    /// Takes angles away that stand where `label_status` says that there is none.
+    fn without_filled_labels(&mut self, table: &Table, targets: &[String]) -> Result<(), TableError> {
+        let angles =
+            targets.iter().zip(&mut self.y).filter_map(|(name, y)| Some((name, name.strip_suffix("_deg")?, y)));
+        let mut angles: Vec<_> = angles.map(|(name, joint, y)| (name, joint, y, 0_usize)).collect();
+        table.each_text("label_status", |row, status| {
+            for (_, joint, values, filled) in &mut angles {
+                if !values[row].is_nan() && lacks_label(status, joint) {
+                    values[row] = f64::NAN;
+                    *filled += 1;
+                }
+            }
+        })?;
+        let said = angles.iter().filter(|(.., filled)| *filled > 0).map(|(name, _, _, filled)| {
+            format!(
+                "{}: {name} stands in {filled} row(s) of which `label_status` says that they have none: were empty \
+                 cells filled in? They count as empty; where the labels are your own, leave out the column \
+                 `label_status`",
+                self.path.display()
+            )
+        });
+        self.warnings.extend(said);
+        Ok(())
     }
 
     /// Marks the rows that statuses warn of.

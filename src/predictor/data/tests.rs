@@ -307,6 +307,30 @@ fn dead_and_saturated_photodiodes_are_warned_of() {
 }
 
 #[test]
+fn photodiodes_that_are_counted_from_0_are_not_shifted_by_one() {
+    let wanted = Wanted { inputs: Some(["P1", "P2"].map(str::to_owned).to_vec()), ..angle() };
+    let said = refusal("P0,P1,J2_deg\n1,2,3\n", &wanted);
+    assert!(said.contains("no column `P2`. Photodiodes are counted from 1") && !said.contains("is it"), "{said}");
+}
+
+#[test]
+fn labels_that_were_filled_in_count_as_empty() {
+    let of = |labels: [&str; 3]| {
+        let [before, gap, other] = labels;
+        let text = format!(
+            "P1,J2_deg,label_status\n\
+             1,{before},before the video\n2,3,ok\n3,{gap},gap: J1 J2\n4,{other},gap: J3\n5,4,ok\n"
+        );
+        read(&text, &angle()).unwrap()
+    };
+    let filled = of(["0", "0", "2"]);
+    assert_eq!((filled.files[0].used, filled.files[0].empty), (3, 2));
+    assert!(filled.warnings.iter().any(|said| said.contains("J2_deg stands in 2 row(s)")), "{:?}", filled.warnings);
+    let empty = of(["", "", "2"]);
+    assert_eq!((empty.data.y(), empty.warnings.len()), (filled.data.y(), filled.warnings.len() - 1));
+}
+
+#[test]
 fn an_unknown_status_is_warned_of_and_used() {
     let read = read("P1,J2_deg,sensor_status\n1,2,loose\n2,3,loose\n3,4,ok\n", &angle()).unwrap();
     assert_eq!(counts(&read)[1], 3);
