@@ -73,6 +73,8 @@ fn dialects_read_alike() {
     same("excel.csv", b"sep=;\r\ntime_s;P1;Fz_N\r\n0;1.5;-1\r\n0.5;2.5;-2\r\n", &[&["`;`"]]);
     same("trailing.csv", b"time_s,P1,Fz_N\n0,1.5,-1,\n0.5,2.5,-2,,\n", &[]);
     same("nameless.csv", b"time_s,P1,Fz_N,\n0,1.5,-1\n0.5,2.5,-2\n", &[]);
+    let again = b"time_s,P1,Fz_N\n0,1.5,-1\n\"time_s\", P1,Fz_N\n0.5,2.5,-2\ntime_s,P1,Fz_N\n";
+    same("joined.csv", again, &[&["line 3 and 1 more repeats the names"]]);
     same("cut.csv", b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2\n1.0,3.", &[&["line 4", "cut off"]]);
     let above = "LabVIEW Measurement\t\nWriter_Version\t2\nDate\t2026/11/20\n***End_of_Header***\t\n\t\n\
                  Samples\t2\t2\nX0\t0.0E+0\t0.0E+0\nDelta_X\t0.5\t0.5\n***End_of_Header***\t\t\n";

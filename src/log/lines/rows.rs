@@ -2,7 +2,7 @@
 //!
 //! Rows have as many cells as the header; empty ones and comments (`#* pressed harder`, as LabChart writes them) at a
 //! row's end may be too many, a column of comments may be missing. The last row, if it is cut off (a logger that was
-//! stopped), is left out and reported.
+//! stopped), is left out and reported; so is the header where it comes again, as in files put one behind the other.
 
 use std::path::Path;
 
@@ -69,6 +69,7 @@ impl Rows<'_> {
         let mut channels: Vec<Vec<f64>> = vec![Vec::new(); self.choice.columns.len()];
         let mut rows = reader(self.text, self.layout);
         let mut row = csv::ByteRecord::new();
+        let mut headers = Vec::new();
         loop {
             let line = self.line_of_next(&rows);
             let more = rows.read_byte_record(&mut row).map_err(|why| LogError::File {
@@ -86,6 +87,10 @@ impl Rows<'_> {
                     break;
                 }
             }
+            if self.is_header(&row) {
+                headers.push(line);
+                continue;
+            }
             for (&(role, column), values) in self.choice.columns.iter().zip(&mut channels) {
                 let cell = bare(&row[column]);
                 match role {
@@ -102,6 +107,10 @@ impl Rows<'_> {
             }
             raw.places.push(line);
         }
+        if let Some(first) = headers.first() {
+            let more = if headers.len() > 1 { format!(" and {} more", headers.len() - 1) } else { String::new() };
+            raw.notes.push(format!("line {first}{more} repeats the names of the columns and is left out"));
+        }
         if numbers.comma {
             raw.notes.push("numbers have decimal commas".to_owned());
         }
@@ -112,6 +121,11 @@ impl Rows<'_> {
         }
         (raw.time_s, raw.midnight_s) = stamps.finish(self.choice.time_unit, &mut raw.notes);
         Ok(raw)
+    }
+
+    /// Whether a row is the header again.
+    fn is_header(&self, row: &csv::ByteRecord) -> bool {
+        row.iter().zip(&self.layout.names).all(|(cell, name)| bare(cell) == name.as_bytes())
     }
 
     /// The line of the row that is read next.
