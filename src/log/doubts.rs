@@ -165,7 +165,7 @@ pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) 
     let of = |(name, values): (&str, &[f64])| {
         let [least, greatest] = without_spikes(values);
         let range = greatest - least;
-        if let Some(leaps) = leaps(name, values, range) {
+        if let Some(leaps) = leaps(name, values, [least, greatest]) {
             leaping.push(leaps);
             return None;
         }

@@ -4,9 +4,12 @@
 //!
 //! Measured: 0 in every 101st row of a phantom's photodiodes took Fy of a model from 0.14 to 0.40 N, 0 in every 60th
 //! row of a force `peak_rise` of `skill` from 3 to 107 N/s. Of 24 phantom logs (touch, bending, random; 13 channels
-//! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step.
+//! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step. Forces of a finger that
+//! taps do at 12.5 rows a second: from rest, and each as far as it goes.
 
 use super::lines::order::short;
+use super::naming::role::Role;
+use crate::median::median_of;
 
 /// So many rows make a fault; fewer are named as [glitches](super::doubts::glitches).
 const ROWS: usize = 3;
@@ -15,6 +18,8 @@ const ROWS: usize = 3;
 const STEPS: f64 = 8.0;
 const RANGE: f64 = 0.1;
 const BACK: f64 = 0.2;
+/// A force that begins and ends so near to its middle, of its range, is one of a finger that rests (assumed).
+const RESTS: f64 = 0.1;
 /// Below so many steps nothing is said.
 const LEAST_STEPS: usize = 50;
 
@@ -28,8 +33,10 @@ pub(super) struct Leaps {
     there: usize,
 }
 
-/// The leaps of a column, where there are so many; `range` is that of its values but for spikes.
-pub(super) fn leaps(name: &str, values: &[f64], range: f64) -> Option<Leaps> {
+/// The leaps of a column, where there are so many and they are no taps of a finger; `ends` are those of its values but
+/// for spikes.
+pub(super) fn leaps(name: &str, values: &[f64], ends: [f64; 2]) -> Option<Leaps> {
+    let range = ends[1] - ends[0];
     let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let mut steps: Vec<f64> = steps.filter(|step| step.is_finite() && *step > 0.0).collect();
     if steps.len() < LEAST_STEPS {
@@ -42,11 +49,19 @@ pub(super) fn leaps(name: &str, values: &[f64], range: f64) -> Option<Leaps> {
         let leap = (row[1] - row[0]).abs().min((row[1] - row[2]).abs());
         leap > far && (row[2] - row[0]).abs() < BACK * leap
     };
-    let mut alone: Vec<f64> = values.windows(3).filter(|row| leaps(row)).map(|row| row[1] + 0.0).collect();
-    alone.sort_unstable_by(f64::total_cmp);
-    let alike = alone.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len())?;
-    let found = Leaps { name: name.to_owned(), rows: alone.len(), to: alike[0], there: alike.len() };
-    (found.rows >= ROWS).then_some(found)
+    let alone = || values.windows(3).filter(|row| leaps(row));
+    let mut to: Vec<f64> = alone().map(|row| row[1] + 0.0).collect();
+    to.sort_unstable_by(f64::total_cmp);
+    let alike = to.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len())?;
+    let found = Leaps { name: name.to_owned(), rows: to.len(), to: alike[0], there: alike.len() };
+    let is_force = matches!(Role::of(name), Some(Role::Force(_)));
+    let are_taps = || {
+        let Some(rest) = median_of(values.iter().copied().filter(|value| value.is_finite())) else { return false };
+        let rests = |value: f64| (value - rest).abs() <= RESTS * range;
+        let is_tap = |row: &[f64]| rests(row[0]) && rests(row[2]) && (ends[0]..=ends[1]).contains(&row[1]);
+        2 * found.there <= found.rows && alone().all(is_tap)
+    };
+    (found.rows >= ROWS && !(is_force && are_taps())).then_some(found)
 }
 
 /// What to say of the columns that do.
@@ -80,9 +95,12 @@ mod tests {
     }
 
     fn said(of: impl Fn(usize) -> f64) -> Option<String> {
+        said_of("P1", of)
+    }
+
+    fn said_of(name: &str, of: impl Fn(usize) -> f64) -> Option<String> {
         let values: Vec<f64> = (0..3000).map(of).collect();
-        let [least, greatest] = without_spikes(&values);
-        leaping(&leaps("P1", &values, greatest - least).into_iter().collect::<Vec<_>>())
+        leaping(&leaps(name, &values, without_spikes(&values)).into_iter().collect::<Vec<_>>())
     }
 
     #[test]
@@ -95,6 +113,21 @@ mod tests {
         }
         let glitches = said(|k| if k % 300 == 7 { 1.0 + 0.1 * (k / 300) as f64 } else { volts(k) });
         assert!(glitches.is_some_and(|said| said.contains("10 of P1, one of them to ")));
+    }
+
+    #[test]
+    fn forces_of_a_finger_that_taps_are_not_and_codes_among_them_are() {
+        let noise = |k: usize| 0.002 * ((k * k) % 7) as f64;
+        let tap = |k: usize| -1.0 - 0.1 * (k / 60 % 9) as f64;
+        let is_down = |k: usize| k % 60 == 7 || k % 120 == 8 || k % 300 > 270;
+        let taps = |k: usize| if is_down(k) { tap(k) } else { 0.0 } - noise(k);
+        assert_eq!(said_of("Fz_N", taps), None);
+        assert!(said_of("P1", taps).is_some(), "blood is not so quick");
+        for code in [0.0, -1.0, -999.0] {
+            let held = |k: usize| if k % 600 < 200 { -1.5 - noise(k) } else { taps(k) };
+            let coded = said_of("Fz_N", |k| if k % 50 == 25 { code } else { held(k) });
+            assert!(coded.is_some_and(|said| said.contains(&format!("to {code}:"))), "{code}");
+        }
     }
 
     #[test]
