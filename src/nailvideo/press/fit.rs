@@ -42,6 +42,10 @@ const SLOW_SHARES: [f64; 4] = [0.05, 0.1, 0.2, 0.35];
 pub(super) const LEAST_SEEN: f64 = 0.95;
 /// The half width of a 95 % interval in standard errors.
 const SES: f64 = 1.96;
+/// By how much an onset may be seen late, and by two frames at least; early by one: a force begins more smoothly than a
+/// ramp (measured on the phantom at 30 frames a second: presses by 6 to 31 ms, releases by up to 62; at 60 and 120 by
+/// 20 and 34 ms in the median).
+const LATE_S: f64 = 2.0 / 30.0;
 
 /// A number with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -235,15 +239,15 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         Interval { value, low: value - down.hypot(rest), high: value + up.hypot(rest) }
     };
     // What takes time takes some.
-    let time = |of: &dyn Fn(Model, &Parameters) -> f64| {
-        let one = interval(of);
-        Interval { low: one.low.max(0.0), ..one }
-    };
+    let time = |one: Interval| Interval { low: one.low.max(0.0), ..one };
+    let (early_s, late_s) = (frame_s, LATE_S.max(2.0 * frame_s));
+    // An onset that is seen late makes what is counted from it short.
+    let since_onset = |share: f64| wider(interval(&|model, p| to_share(model, p, share)), early_s, late_s);
     let course = Course {
-        onset_s: wider(interval(&|_, p| p[0]), frame_s),
-        t50_s: time(&|model, p| to_share(model, p, 0.5)),
-        t90_s: time(&|model, p| to_share(model, p, 0.9)),
-        tau_s: time(&|_, p| p[1].exp()),
+        onset_s: wider(interval(&|_, p| p[0]), late_s, early_s),
+        t50_s: time(since_onset(0.5)),
+        t90_s: time(since_onset(0.9)),
+        tau_s: time(interval(&|_, p| p[1].exp())),
         depth: p[4] - p[3],
         sd: taken.raw_sd,
         seen: seen(&taken),
@@ -268,11 +272,10 @@ fn simplest(fits: &[Fitted], ramps: bool) -> usize {
     known.find(is_good_enough).unwrap_or(best)
 }
 
-/// An onset's interval with a frame after it and two before: a force begins more smoothly than a ramp, so that its
-/// onset is seen late (measured on the phantom at 30 frames a second: presses by 6 to 31 ms, releases by up to 62).
-fn wider(one: Interval, frame_s: f64) -> Interval {
+/// An interval with so much more below and above.
+fn wider(one: Interval, below: f64, above: f64) -> Interval {
     let (down, up) = (one.value - one.low, one.high - one.value);
-    Interval { low: one.value - down.hypot(2.0 * frame_s), high: one.value + up.hypot(frame_s), ..one }
+    Interval { low: one.value - down.hypot(below), high: one.value + up.hypot(above), ..one }
 }
 
 /// For slopes.

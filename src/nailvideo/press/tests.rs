@@ -90,7 +90,8 @@ fn onsets_and_times_are_covered_by_their_intervals() {
         let errors = errors(of_seed, t90_s);
         let ([onset_error_s, t90_error], [onset, t90]) = figures(&format!("tau {tau}, rho {rho}"), &errors, t90_s);
         assert!(errors.len() as u64 == SEEDS && onset_error_s <= 1.0 / RATE_HZ && t90_error <= 0.08);
-        assert!([onset, t90].iter().all(|held| (0.90..=0.995).contains(held)), "{tau}");
+        // What is counted from an onset has room for one that is seen late, which these aren't.
+        assert!((0.90..=0.995).contains(&onset) && t90 >= 0.90, "{tau}");
     }
 }
 
@@ -165,6 +166,40 @@ fn a_pulse_and_slow_waves_are_held() {
         assert!(errors.len() as u64 == SEEDS && t90 <= 1.0 / 7.0, "{tau} {until_s}");
         // Measured 0.97 and more, 0.83 and more.
         assert!(onset_held >= 0.93 && t90_held >= 0.82, "{tau} {until_s}");
+    }
+}
+
+/// A force that begins and ends smoothly, and colour that follows it: its onset is seen late at any rate of frames, and
+/// what is counted from it is short by as much.
+#[test]
+fn forces_that_begin_smoothly_are_held_at_any_rate() {
+    const PARTS: u32 = 60;
+    for (rate_hz, rise_s) in [30.0, 60.0, 120.0].into_iter().flat_map(|hz| [(hz, 0.2), (hz, 0.4)]) {
+        let reached = |since_s: f64| {
+            // The force's steps, each of which the colour follows.
+            let part = |k: u32| {
+                let [from, to] = [k, k + 1].map(|k| f64::from(k) / f64::from(PARTS));
+                let step = lunula_predictor::smooth(to) - lunula_predictor::smooth(from);
+                step * (1.0 - (-(since_s - rise_s * 0.5 * (from + to)).max(0.0) / 0.15).exp())
+            };
+            (0..PARTS).map(part).sum::<f64>()
+        };
+        let truth = [0.5, 0.9].map(|share| (0..).map(|k| f64::from(k) * 1e-3).find(|&t| reached(t) >= share).unwrap());
+        let (mut held, mut late_s) = ([0; 3], 0.0);
+        for seed in 0..100 {
+            let mut normal = normals(seed);
+            let onset_s = seed as f64 / 100.0 / rate_hz;
+            let time_s: Vec<f64> = (0..(5.0 * rate_hz) as usize).map(|k| k as f64 / rate_hz - 2.0).collect();
+            let values: Vec<f64> = time_s.iter().map(|t| 60.0 * reached(t - onset_s) + normal()).collect();
+            let course = fit(&time_s, &values, 0.1, None).expect("a course");
+            let of = [(course.onset_s, onset_s), (course.t50_s, truth[0]), (course.t90_s, truth[1])];
+            of.iter()
+                .zip(&mut held)
+                .for_each(|((one, truth), held)| *held += usize::from((one.low..=one.high).contains(truth)));
+            late_s += (course.onset_s.value - onset_s) / 100.0;
+        }
+        println!("{rate_hz} Hz, {rise_s} s: {late_s:.3} s late, held {held:?} of 100");
+        assert!(held.iter().all(|held| *held >= 90), "{rate_hz} {rise_s} {held:?}");
     }
 }
 
