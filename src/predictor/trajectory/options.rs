@@ -228,7 +228,7 @@ pub struct RandomOptions {
     /// How long it takes
     #[arg(long, default_value_t = 100.0, allow_negative_numbers = true)]
     seconds: f64,
-    /// Rates are between 0.4 and 4 times this; at 0.03, equation 19's default limit is kept
+    /// Rates are between 0.4 and 4 times this; at 0.03, equation 19's default limit is kept but for 1 % of the time
     #[arg(long, default_value_t = 0.03, allow_negative_numbers = true)]
     hz: f64,
     /// The seed of everything random
