@@ -4,8 +4,8 @@
 //!
 //! Measured: 0 in every 101st row of a phantom's photodiodes took Fy of a model from 0.14 to 0.40 N, 0 in every 60th
 //! row of a force `peak_rise` of `skill` from 3 to 107 N/s. Of 24 phantom logs (touch, bending, random; 13 channels
-//! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step. Forces of a finger that
-//! taps do at 12.5 rows a second: from rest, and each as far as it goes.
+//! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step. Forces of a finger
+//! that taps do at 12.5 rows a second: from rest, and each as far as it goes.
 
 use super::lines::order::short;
 use super::naming::role::Role;
