@@ -28,36 +28,20 @@ const MOST_BYTES: u64 = 128 << 20;
 
 /// Why a LabelMe file could not be read or written.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum Error {
-    /// The file could not be read.
     #[error("{}: {source}", path.display())]
-    Read {
-        /// The file that was to be read.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// The file could not be written.
+    Read { path: PathBuf, source: io::Error },
     #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
     /// The file is longer than any annotation.
     #[error(
         "{}: has over {} MiB, more than is read of an annotation; save it without the picture in it (imageData null)",
         path.display(), MOST_BYTES >> 20
     )]
-    TooLong {
-        /// The file that was read.
-        path: PathBuf,
-    },
-    /// The file is not LabelMe's JSON.
+    TooLong { path: PathBuf },
     #[error("{}: not a LabelMe file: {source}; open it in LabelMe and save it again", path.display())]
     Parse {
-        /// The file that was read.
         path: PathBuf,
         /// Where in the file, and what is wrong.
         source: serde_json::Error,

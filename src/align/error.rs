@@ -12,39 +12,22 @@ use crate::table::TableError;
 
 /// Why there is no labelled set.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum AlignError {
-    /// A table can't be read or written.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The log can't be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The log has no lit rows, or its range is none.
     #[error(transparent)]
     Ambient(#[from] AmbientError),
-    /// An export can't be written, or not so.
     #[error(transparent)]
     Export(#[from] ExportError),
-    /// The clocks can't be tied with confidence.
     #[error("{}: {why}", path.display())]
-    NotTied {
-        /// The table of angles.
-        path: PathBuf,
-        /// Why, and what to do.
-        why: String,
-    },
-    /// No row gets a label.
+    NotTied { path: PathBuf, why: String },
     #[error("{}: {why}", path.display())]
-    NothingLabelled {
-        /// The log.
-        path: PathBuf,
-        /// Why, and what to do.
-        why: String,
-    },
-    /// A result can't be written.
+    NothingLabelled { path: PathBuf, why: String },
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }

@@ -17,10 +17,8 @@ use crate::table::{Column, ColumnKind, Table, TableError, TableWriter, Value};
 /// Why sets were not joined.
 #[derive(Debug, Error)]
 pub(super) enum JoinError {
-    /// A table can't be read or written.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// Two sets label the same time.
     #[error(
         "{}: what was filmed from {from_s} s on overlaps with what was filmed in {} up to {to_s} s, of one subject and \
          session; leave one out, or give the recordings sessions of their own",
@@ -30,14 +28,12 @@ pub(super) enum JoinError {
     Overlap {
         /// The set that begins first.
         earlier: PathBuf,
-        /// The other.
         later: PathBuf,
         /// Where the later one begins, seconds.
         from_s: f64,
         /// Where the earlier one ends, seconds.
         to_s: f64,
     },
-    /// No set has a row.
     #[error("{}: no set has a row to be joined; look at what made it", .0.display())]
     Empty(PathBuf),
 }

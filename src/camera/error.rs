@@ -11,33 +11,18 @@ use crate::vision::VisionError;
 
 /// Why there are no results.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum CameraError {
-    /// An input can't be used at all.
     #[error("{}: {why}", path.display())]
-    Input {
-        /// The folder or file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// A file that is no photograph can't be read as a video.
+    Input { path: PathBuf, why: String },
     #[error("{0} (a folder of photographs or a video is needed)")]
     Video(#[from] VideoError),
-    /// The views do not determine the lens.
     #[error("{why}{}", listed(failed))]
-    Undetermined {
-        /// What is wrong and what to do.
-        why: String,
-        /// What could not be used, each with the reason.
-        failed: Vec<String>,
-    },
-    /// OpenCV gave nothing.
+    Undetermined { why: String, failed: Vec<String> },
     #[error(transparent)]
     Vision(#[from] VisionError),
-    /// A result can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }

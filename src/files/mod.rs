@@ -30,26 +30,15 @@ pub(crate) fn json_text(value: &impl Serialize) -> String {
 
 /// Why results can't be written.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum WriteError {
-    /// The folder for the results.
     #[error(
         "{}: cannot be written to ({why}); choose another --out or make room and permission for it",
         .path.display()
     )]
-    Folder {
-        /// The one that was to be written into.
-        path: PathBuf,
-        /// The system's words.
-        why: io::Error,
-    },
-    /// One file of the results.
+    Folder { path: PathBuf, why: io::Error },
     #[error("{}: cannot be written ({why}); nothing there was changed", .path.display())]
-    File {
-        /// Where it would have gone.
-        path: PathBuf,
-        /// The system's or the encoder's words.
-        why: String,
-    },
+    File { path: PathBuf, why: String },
     /// Files that were replaced before one could not be, and that could not be put back.
     #[error(
         "{}: cannot be written ({why}), and what stood before could not be put back: {} changed; what was there is \
@@ -57,19 +46,15 @@ pub enum WriteError {
         .path.display(), listed(.changed), listed(.kept)
     )]
     Half {
-        /// The file that could not be written.
         path: PathBuf,
-        /// The system's words.
         why: String,
         /// The places that are not as before.
         changed: Vec<PathBuf>,
         /// Folders with what stood there.
         kept: Vec<PathBuf>,
     },
-    /// A result would replace an input.
     #[error("{}: is an input itself; choose another name for the result", .0.display())]
     Input(PathBuf),
-    /// A folder stands where a file has to go.
     #[error(
         "{}: is a folder, and a result of this name has to go there; move it or choose another --out",
         .0.display()

@@ -90,40 +90,24 @@ pub struct Log {
 
 /// Why a log can't be read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum LogError {
-    /// The file can't be opened, unpacked or understood as a whole.
     #[error("{}: {what}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// The columns that are needed are missing, or ambiguous.
+    File { path: PathBuf, what: String },
     #[error("{}: {what}", path.display())]
-    Columns {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// One place of the file is wrong.
+    Columns { path: PathBuf, what: String },
     #[error("{place}: {what}")]
     Cell {
         /// File, line (CSV), row (Parquet) or sample (XDF), column.
         place: String,
-        /// What is wrong and what to do.
         what: String,
     },
-    /// Time does not go forward.
     #[error("{place}: {what}")]
     Time {
         /// File, line (CSV), row (Parquet) or sample (XDF) at which it does not.
         place: String,
-        /// What is wrong and what to do.
         what: String,
     },
-    /// It has no lit rows, or its range is none.
     #[error(transparent)]
     Ambient(#[from] AmbientError),
 }

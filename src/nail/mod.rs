@@ -16,20 +16,17 @@ use thiserror::Error;
 
 /// Why a list of points is no outline of a nail.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum OutlineFault {
-    /// Fewer than three different points.
     #[error("the outline has {0} different point(s); an outline needs at least 3")]
     TooFewPoints(usize),
-    /// A coordinate is NaN or infinite.
     #[error("point {0} of the outline is not finite")]
     NotFinite(usize),
     /// More points than any outline needs.
     #[error("the outline has {0} points, more than {MOST_POINTS}; draw it with fewer")]
     TooManyPoints(usize),
-    /// The polygon crosses itself.
     #[error("the outline crosses itself; draw it once around the nail")]
     SelfCrossing,
-    /// The polygon encloses nothing.
     #[error("the outline encloses no area")]
     NoArea,
 }

@@ -12,21 +12,18 @@ use crate::job::Interrupted;
 
 /// Why a set gave no results.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum PhotosError {
-    /// The results can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Not one usable nail.
     #[error("not one nail could be used, so there are no maps{}:{}", look_at(.report), list(.failed))]
     NothingUsable {
         /// The report of what was found and why it is not used, where there is something to see.
         report: Option<PathBuf>,
-        /// Why, by photograph.
         failed: Vec<SetFault>,
         /// What was detected but not trusted and was saved, where that was requested: a person may correct it.
         outlines: Option<SavedOutlines>,
     },
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }
@@ -41,30 +38,17 @@ fn list(failed: &[SetFault]) -> String {
 
 /// Why results were not joined; nothing is written then.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum MergeError {
-    /// The parts don't fit.
     #[error(transparent)]
     Partial(#[from] PartialFault),
-    /// A part's table of nails.
     #[error("{}: {why}; make that part again", .file.display())]
-    Nails {
-        /// Which table.
-        file: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
+    Nails { file: PathBuf, why: String },
     /// The exact maps that results are compared with.
     #[error("{}: {why}", .file.display())]
-    Truth {
-        /// Which map.
-        file: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// The results can't be written.
+    Truth { file: PathBuf, why: String },
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }

@@ -59,35 +59,16 @@ impl std::fmt::Display for SetFault {
 
 /// Why there is no set at all.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum SetError {
-    /// The folder can't be listed.
     #[error("{}: {why} (a folder of photographs is needed)", .folder.display())]
-    Unreadable {
-        /// Which folder.
-        folder: PathBuf,
-        /// The system's words.
-        why: std::io::Error,
-    },
-    /// The manifest can't be understood.
+    Unreadable { folder: PathBuf, why: std::io::Error },
     #[error("{}: {why}", .file.display())]
-    Manifest {
-        /// The manifest.
-        file: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// Not one photograph.
+    Manifest { file: PathBuf, why: String },
     #[error(
         "{}: no photographs here (looked for {place}){also}", .folder.display()
     )]
-    Empty {
-        /// Which folder.
-        folder: PathBuf,
-        /// Where was looked.
-        place: &'static str,
-        /// What was there instead.
-        also: String,
-    },
+    Empty { folder: PathBuf, place: &'static str, also: String },
 }
 
 /// A checked list of photographs.

@@ -34,50 +34,36 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 
 /// Why a file is not a photograph. `Display` says what to do; the caller adds which file.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ReadFault {
-    /// The file can't be opened or read.
     #[error("{0}")]
     Io(#[from] std::io::Error),
     /// Neither PNG, JPEG, TIFF nor BMP by its first bytes.
     #[error("is not a PNG, JPEG, TIFF or BMP picture, whatever its name says; convert it to one of these")]
     NotAPicture,
-    /// More pixels than are read.
     #[error(
         "has {width} x {height} px, {:.1} megapixels, more than the {megapixels} that are read; make it smaller, or \
          allow more with --max-megapixels", (f64::from(*width) * f64::from(*height) / 1e6)
     )]
-    TooLarge {
-        /// Width by its header, pixels.
-        width: u32,
-        /// Height by its header, pixels.
-        height: u32,
-        /// How many are read.
-        megapixels: u32,
-    },
+    TooLarge { width: u32, height: u32, megapixels: u32 },
     /// More bytes than so many pixels take.
     #[error(
         "is longer than a picture of {megapixels} megapixels can be; make it smaller, or allow more with \
          --max-megapixels"
     )]
-    TooLong {
-        /// How many are read.
-        megapixels: u32,
-    },
+    TooLong { megapixels: u32 },
     /// A JPEG without an end: the rest would be grey.
     #[error("is a truncated JPEG: its data end before the picture does; copy the file again from the camera")]
     Truncated,
     /// Sample formats other than 8 and 16 bit integers.
     #[error("has {0:?} samples; save it with 8 or 16 bits a channel, grey or RGB")]
     Samples(ColorType),
-    /// A white level for a file that has its own.
     #[error("has 8 bits a channel, whose white is 255; --white is for 16 bits: run such photographs apart, without it")]
     WhiteOfEight,
-    /// A sample beyond white.
     #[error("has a sample of {largest}, above --white {white}; give the sensor's largest value (4095 of 12 bits)")]
     AboveWhite {
         /// The largest sample.
         largest: u16,
-        /// What white is.
         white: u16,
     },
     /// sRGB's curve is to be undone where it was not used.
@@ -89,7 +75,6 @@ pub enum ReadFault {
     /// A kind of TIFF or the like that the decoder does not know: CIELab, YCbCr, floating point.
     #[error("cannot be decoded ({0}); export it with 8 or 16 bits, in grey or RGB, as PNG, TIFF, BMP or JPEG")]
     Unsupported(image::ImageError),
-    /// The decoder's own complaint.
     #[error("cannot be decoded ({}); it may be damaged: copy or export it again", .0.to_string().trim_end())]
     Decode(image::ImageError),
 }

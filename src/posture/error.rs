@@ -11,41 +11,20 @@ use crate::video::VideoError;
 
 /// Why there are no results.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum PostureError {
-    /// The video can't be read or the overlay not written.
     #[error(transparent)]
     Video(#[from] VideoError),
-    /// The markers can't be found or distinguished.
     #[error("{}: {why}", path.display())]
-    Markers {
-        /// The video.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// The lens of the marker file is not the video's.
+    Markers { path: PathBuf, why: String },
     #[error("{}: {why}", path.display())]
-    Camera {
-        /// The video.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// The clock can't be where the marker file says.
+    Camera { path: PathBuf, why: String },
     #[error("{}: [clock]: {why}", path.display())]
-    Clock {
-        /// The video.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// A result can't be written.
+    Clock { path: PathBuf, why: String },
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// A table can't be written.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }

@@ -25,32 +25,18 @@ pub use read::{Cell, Table, column_names};
 
 /// Why a table can't be written or read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum TableError {
-    /// Neither of the formats.
     #[error("{}: a table ends in .csv or .parquet; name it so", .0.display())]
     Extension(PathBuf),
-    /// The file can't be written.
     #[error("{}: cannot be written ({why})", path.display())]
-    Write {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// The system's or the format's words.
-        why: String,
-    },
-    /// The file can't be read as a table.
+    Write { path: PathBuf, why: String },
     #[error("{}: {what}", path.display())]
-    Read {
-        /// The file that was to be read.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// One place of the table is wrong.
+    Read { path: PathBuf, what: String },
     #[error("{place}: {what}")]
     Cell {
         /// File, line (CSV) or row (Parquet), column.
         place: String,
-        /// What is wrong and what to do.
         what: String,
     },
 }

@@ -4,31 +4,14 @@ use std::path::{Path, PathBuf};
 
 /// Why a file gives no frames, or takes none.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum VideoError {
-    /// The file can't be opened or is no video.
     #[error("{}: {what}", path.display())]
-    Open {
-        /// The file that was to be read.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// The picture's size or samples change in mid stream.
+    Open { path: PathBuf, what: String },
     #[error("{}: {what}", path.display())]
-    Changed {
-        /// The file that was read.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// A frame can't be written.
+    Changed { path: PathBuf, what: String },
     #[error("{}: {what}", path.display())]
-    Write {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
+    Write { path: PathBuf, what: String },
 }
 
 impl VideoError {

@@ -20,14 +20,12 @@ pub(super) use mot::mot;
 
 /// Why there is no export.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ExportError {
-    /// The table of markers can't be read.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A result can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// A name that BIDS does not allow.
     #[error(
         "the {entity} {}; BIDS allows letters and digits only: name it so",
         .label.as_ref().map_or("is not named".to_owned(), |l| format!("is named `{l}`"))
@@ -35,17 +33,10 @@ pub enum ExportError {
     Label {
         /// Of what: `subject`, `session`, `task`, `tracksys`.
         entity: &'static str,
-        /// What was given.
         label: Option<String>,
     },
-    /// A file or a table that the format has no place for.
     #[error("{}: {what}", path.display())]
-    Unfit {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
+    Unfit { path: PathBuf, what: String },
 }
 
 /// Decimals of a time in seconds: as many as the table of angles has.

@@ -2,22 +2,13 @@
 
 /// Why a video's readings tie no clock. Times are the video's, seconds.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ClockFault {
-    /// Too few frames read.
     #[error(
         "the clock was read in {read} of {frames} frames, of which {agree} agree; at least {fewest} that agree are \
          needed: check the clock's place and format in the marker file, or film it larger and unhidden"
     )]
-    TooFew {
-        /// Frames read.
-        read: usize,
-        /// Frames read that agree.
-        agree: usize,
-        /// All frames.
-        frames: usize,
-        /// How many are needed.
-        fewest: usize,
-    },
+    TooFew { read: usize, agree: usize, frames: usize, fewest: usize },
     /// It shows the same while the video goes on.
     #[error(
         "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video to \
@@ -25,9 +16,7 @@ pub enum ClockFault {
          its digits"
     )]
     Stops {
-        /// From when on.
         from_s: f64,
-        /// Until when.
         to_s: f64,
         /// What it shows, seconds.
         shown_s: f64,
@@ -38,7 +27,6 @@ pub enum ClockFault {
          one"
     )]
     Jumps {
-        /// When.
         at_s: f64,
         /// By how much, seconds.
         by_s: f64,
@@ -57,18 +45,7 @@ pub enum ClockFault {
         "the clock's readings contradict each other: no more than {agree} of {read} agree, the first that does not is \
          at {at_s:.3} s of the video; check the clock's place and format in the marker file"
     )]
-    Contradictory {
-        /// Frames read that agree.
-        agree: usize,
-        /// Frames read.
-        read: usize,
-        /// When the first frame is that does not.
-        at_s: f64,
-    },
-    /// What was asked for can't be.
+    Contradictory { agree: usize, read: usize, at_s: f64 },
     #[error("the clock's resolution is {resolution_s} s; it must be a positive number of seconds")]
-    Resolution {
-        /// As asked for.
-        resolution_s: f64,
-    },
+    Resolution { resolution_s: f64 },
 }

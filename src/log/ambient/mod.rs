@@ -89,19 +89,13 @@ impl Words for AmbientRule {
 
 /// Why a log gives no samples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum AmbientError {
-    /// No row is lit.
     #[error(
         "{path}: the LED is never on (`led` is 0 in all {rows} rows), so there is nothing to label; is 1 the unlit \
          state here?"
     )]
-    NeverOn {
-        /// The log.
-        path: String,
-        /// Its rows.
-        rows: usize,
-    },
-    /// The recorded range is none.
+    NeverOn { path: String, rows: usize },
     #[error("--full-scale {low},{high}: the lower end of the recorded range comes first, then the higher, both finite")]
     FullScale {
         /// As given, volts.

@@ -9,18 +9,13 @@ use crate::nail::{Axis, Outline};
 
 /// Why a scene can't be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum SceneFault {
-    /// The picture is too small to be one.
     #[error(
         "a picture of {width} x {height} pixels is too small; at least {least} x {least} are needed",
         least = NailScene::LEAST_SIDE
     )]
-    PictureTooSmall {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
+    PictureTooSmall { width: u32, height: u32 },
     /// The nail is no wider than a pixel or two, or its size is no number.
     #[error("a nail {0} px wide can't be drawn; it must be at least {least} px wide", least = NailScene::LEAST_NAIL_PX)]
     NailTooSmall(f64),

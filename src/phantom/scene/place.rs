@@ -19,42 +19,28 @@ pub(in crate::phantom) const PHOTOS_RECORD: &str = "truth/phantom.json";
 
 /// Why a scene was not written.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum Error {
-    /// The options of photographs can't be met.
     #[error(transparent)]
     Options(#[from] Faults),
-    /// A nail can't be drawn.
     #[error(transparent)]
     Scene(#[from] SceneFault),
-    /// Something that this job did not write is in the way.
     #[error("{} stands already and is not {whose}; choose another --out", place.display())]
     InTheWay {
-        /// The file or folder.
         place: PathBuf,
         /// Whose it would have to be.
         whose: &'static str,
     },
-    /// A file or folder could not be written.
     #[error(transparent)]
     Write(#[from] Unwritten),
-    /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
-    /// A table could not be written.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A photograph could not be encoded.
     #[error("{}: cannot be encoded: {source}", path.display())]
-    Encode {
-        /// The photograph.
-        path: PathBuf,
-        /// What is wrong.
-        source: image::ImageError,
-    },
-    /// An annotation could not be written.
+    Encode { path: PathBuf, source: image::ImageError },
     #[error(transparent)]
     Annotation(#[from] labelme::Error),
-    /// A video could not be encoded.
     #[error(transparent)]
     Video(#[from] VideoError),
     /// Stopped from outside; nothing was left behind.

@@ -42,11 +42,10 @@ pub enum Drawn {
 
 /// Why a whole annotation can't be used.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum AnnotationFault {
-    /// The LabelMe file.
     #[error(transparent)]
     File(#[from] crate::labelme::Error),
-    /// The size is that of another picture.
     #[error(
         "{file}: was drawn on a picture of {drawn:?} px, but the photograph has {photo:?} px; draw it again, or scale \
          it"
@@ -65,10 +64,8 @@ pub enum AnnotationFault {
          was drawn on the upright or on the stored picture; say --annotations upright or --annotations stored"
     )]
     Turned(String),
-    /// No polygon labelled `nail`.
     #[error("{0}: no polygon labelled `nail` in it; label one, or remove the file to have the nail detected")]
     NoNail(String),
-    /// Every polygon is labelled `not a nail`.
     #[error("{0}: whatever was found is rejected in it (`{NOT_A_NAIL}`), so nothing of the photograph is used")]
     Rejected(String),
 }
@@ -95,13 +92,12 @@ pub struct Annotated {
 
 /// Why one shape is not a nail.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ShapeFault {
-    /// Not a polygon.
     #[error("shape {number} is a {kind} labelled nail; draw it as a polygon")]
     NotAPolygon {
         /// Counted from 1.
         number: usize,
-        /// LabelMe's shape type.
         kind: String,
     },
     /// A point where no picture of this size can have one.
@@ -116,9 +112,7 @@ pub enum ShapeFault {
         x: f64,
         /// Down, pixels.
         y: f64,
-        /// Width of the upright photograph, pixels.
         width: u32,
-        /// Height of the upright photograph, pixels.
         height: u32,
     },
     /// An axis that is no nail's, most likely this one's.
@@ -130,12 +124,10 @@ pub enum ShapeFault {
         /// Counted from 1.
         number: usize,
     },
-    /// Not an outline.
     #[error("shape {number}: {fault}")]
     Outline {
         /// Counted from 1.
         number: usize,
-        /// What is wrong with it.
         fault: OutlineFault,
     },
 }

@@ -87,18 +87,14 @@ impl serde::Serialize for MaskValues {
 
 /// Why a picture is not a mask.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum MaskFault {
     /// Neither full-scale nor instance numbers.
     #[error(
         "the mask's largest value is {largest} of {full}: neither white nails (above half) nor nail numbers (1 to 32); \
          make the nails white"
     )]
-    Range {
-        /// The largest value in the mask.
-        largest: f32,
-        /// Full scale of the mask's pixels.
-        full: f32,
-    },
+    Range { largest: f32, full: f32 },
     /// A picture in grey.
     #[error(
         "a grey picture rather than a mask: for every 100 white pixels it has {:.0} that are neither white nor black, \
@@ -109,22 +105,11 @@ pub enum MaskFault {
         /// Grey pixels away from edges, for each white one.
         grey: f64,
     },
-    /// No pixel of the values that are nail.
     #[error("no pixel of the mask has a value of {values}; its values are {least} to {largest}")]
-    NoSuchValue {
-        /// Which values are nail.
-        values: MaskValues,
-        /// The smallest value in the mask.
-        least: f32,
-        /// The largest value in the mask.
-        largest: f32,
-    },
+    NoSuchValue { values: MaskValues, least: f32, largest: f32 },
     /// Small values all over the place.
     #[error("the mask's values 1 to 32 form {regions} regions: a noisy black picture rather than nail numbers")]
-    Noise {
-        /// How many regions there are.
-        regions: usize,
-    },
+    Noise { regions: usize },
 }
 
 /// A region of a mask that is not a nail.

@@ -160,27 +160,14 @@ impl From<Vec<Nail>> for Listed {
 
 /// Why a photograph has no nails to list.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum SourceFault {
-    /// The LabelMe file.
     #[error(transparent)]
     Annotation(#[from] AnnotationFault),
-    /// The mask, as a picture.
     #[error("the mask {} {why}", .file.display())]
-    MaskFile {
-        /// Which mask.
-        file: PathBuf,
-        /// Why it can't be read.
-        why: ReadFault,
-    },
-    /// The mask, as a mask.
+    MaskFile { file: PathBuf, why: ReadFault },
     #[error("the mask {}: {why}", .file.display())]
-    Mask {
-        /// Which mask.
-        file: PathBuf,
-        /// Why it can't be used.
-        why: MaskFault,
-    },
-    /// A mask without a nail.
+    Mask { file: PathBuf, why: MaskFault },
     #[error("the mask {} is all black; paint its nails white", .0.display())]
     EmptyMask(PathBuf),
     /// Annotated outlines only, and there is none.
@@ -190,13 +177,10 @@ pub enum SourceFault {
         /// Whether masks were looked for.
         masks: bool,
     },
-    /// Detection failed.
     #[error(transparent)]
     Vision(#[from] VisionError),
-    /// Detection found nothing.
     #[error("{why}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
     NotFound {
-        /// Why nothing was found.
         why: NothingFound,
         /// Places that detection refused.
         refused: Vec<Refused>,

@@ -35,52 +35,29 @@ const MOST_META: u64 = 64 << 20;
 
 /// Why partial maps can't be read or don't join.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum PartialFault {
-    /// Not readable as a partial map.
     #[error("{}: is not a partial map ({why}); name a folder that `lunula photos` wrote", .file.display())]
-    Unreadable {
-        /// Which file.
-        file: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// Written by another version.
+    Unreadable { file: PathBuf, why: String },
     #[error("{}: has format {found}, this version reads {FORMAT} and {FORMAT_OF_ONE}; make it again", .file.display())]
-    Version {
-        /// Which file.
-        file: PathBuf,
-        /// Its format.
-        found: u32,
-    },
-    /// Made with other options.
+    Version { file: PathBuf, found: u32 },
     #[error(
         "{}: pose `{pose}` was made with {found}, the parts before it with {expected}; make one of them again",
         .file.display()
     )]
     Options {
-        /// Which file.
         file: PathBuf,
-        /// Whose maps.
         pose: String,
         /// Its options, as JSON.
         found: String,
         /// The others' options, as JSON.
         expected: String,
     },
-    /// A subject is in two parts.
     #[error(
         "{}: subject `{subject}` of pose `{pose}` is in an earlier part too; a subject counts once: leave one out",
         .file.display()
     )]
-    Overlap {
-        /// Which file.
-        file: PathBuf,
-        /// Whose maps.
-        pose: String,
-        /// The subject in both.
-        subject: String,
-    },
-    /// Nothing to join.
+    Overlap { file: PathBuf, pose: String, subject: String },
     #[error(
         "{}: holds no run.json with maps/<pose>.partial.npz; name a folder that `lunula photos` wrote",
         .0.display()

@@ -14,24 +14,13 @@ use std::path::{Path, PathBuf};
 
 /// Why there is no pipeline for a folder.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum InitError {
-    /// The folder can't be read.
     #[error("{}: {why} (a folder with recordings is needed)", path.display())]
-    Unreadable {
-        /// The folder.
-        path: PathBuf,
-        /// The system's words.
-        why: std::io::Error,
-    },
-    /// Nothing in it is of use.
+    Unreadable { path: PathBuf, why: std::io::Error },
     #[error("{}: {what}; photographs of nails, videos with a marker file, logs of photodiodes (time_s, P1, ..) or \
              tables of angles are looked for", path.display())]
-    Nothing {
-        /// The folder.
-        path: PathBuf,
-        /// What was found instead.
-        what: String,
-    },
+    Nothing { path: PathBuf, what: String },
 }
 
 /// Writes a pipeline for what lies in `folder`; `from` is that folder as the pipeline file will name it, with `/`,

@@ -31,32 +31,17 @@ const NAMED: usize = 5;
 
 /// Why parts can't be merged; nothing was written.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum MergeFault {
-    /// A folder without mark.
     #[error(
         "{}: is no part of a run; make it with lunula run PIPELINE --shard I/N --out {}",
         .0.display(), .0.display()
     )]
     NoPart(PathBuf),
-    /// Somebody works in it.
     #[error("{}: a run works here ({}); wait for it", .path.display(), said(.holder.as_ref()))]
-    Busy {
-        /// Which part.
-        path: PathBuf,
-        /// Who, if that can be read.
-        holder: Option<Holder>,
-    },
-    /// One part in two folders.
+    Busy { path: PathBuf, holder: Option<Holder> },
     #[error("{} and {}: both are part {part}; give each part once", .one.display(), .other.display())]
-    Twice {
-        /// Which part.
-        part: String,
-        /// One folder.
-        one: PathBuf,
-        /// The other.
-        other: PathBuf,
-    },
-    /// Parts that are not there.
+    Twice { part: String, one: PathBuf, other: PathBuf },
     #[error(
         "{}: of {of} parts {} is missing; run it with --shard, or give its folder too",
         .missing.join(", "), if .missing.len() == 1 { "this" } else { "each of these" }
@@ -64,83 +49,39 @@ pub enum MergeFault {
     Gap {
         /// Which, as `2/7`.
         missing: Vec<String>,
-        /// Of how many.
         of: usize,
     },
-    /// Parts of different runs.
     #[error(
         "{} and {}: are parts of different runs: {what}; run one of them again as the other",
         .one.display(), .other.display()
     )]
-    Differ {
-        /// One folder.
-        one: PathBuf,
-        /// The other.
-        other: PathBuf,
-        /// In what they differ.
-        what: String,
-    },
-    /// The pipeline is not the one of the parts.
+    Differ { one: PathBuf, other: PathBuf, what: String },
     #[error("{}: the parts were made by another pipeline than {pipeline} is now: {what}; run the parts again, or give \
              theirs with --pipeline", .part.display())]
-    Pipeline {
-        /// A part.
-        part: PathBuf,
-        /// The pipeline file.
-        pipeline: String,
-        /// In what they differ.
-        what: String,
-    },
-    /// A part that was stopped.
+    Pipeline { part: PathBuf, pipeline: String, what: String },
     #[error("{}: did not come to its end: {}; run it again with --shard {part}", .path.display(), listed(.missing))]
-    Unfinished {
-        /// Which folder.
-        path: PathBuf,
-        /// Which part.
-        part: String,
-        /// The tasks that it has not done.
-        missing: Vec<TaskId>,
-    },
-    /// Two parts made different things under one name.
+    Unfinished { path: PathBuf, part: String, missing: Vec<TaskId> },
     #[error(
         "{task}: came out differently in {} and in {}; remove it from one of them and run that part again",
         .one.display(), .other.display()
     )]
-    Overlap {
-        /// The task.
-        task: TaskId,
-        /// One part.
-        one: PathBuf,
-        /// The other.
-        other: PathBuf,
-    },
-    /// A part's result is not what it made.
+    Overlap { task: TaskId, one: PathBuf, other: PathBuf },
     #[error("{}: {what} since it was made; run part {part} again", .path.display())]
     Spoilt {
-        /// Which file.
         path: PathBuf,
         /// `was edited by hand` or `was deleted`.
         what: &'static str,
-        /// Which part.
         part: String,
     },
-    /// The folder for the results is a part's.
     #[error("{}: is one of the parts; choose another --out", .0.display())]
     IntoPart(PathBuf),
-    /// The tasks make no sense.
     #[error(transparent)]
     Tasks(#[from] GraphFault),
-    /// The folder for the results can't be used.
     #[error(transparent)]
     Run(#[from] RunFault),
     /// A result can't be brought to its place; those before it were.
     #[error("{task}: {why}")]
-    Put {
-        /// Which task's.
-        task: TaskId,
-        /// Why.
-        why: String,
-    },
+    Put { task: TaskId, why: String },
 }
 
 fn listed(tasks: &[TaskId]) -> String {

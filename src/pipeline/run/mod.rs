@@ -78,46 +78,25 @@ pub struct RunWatch<'a> {
 
 /// Why there was no run.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum RunFault {
-    /// The tasks make no sense.
     #[error(transparent)]
     Tasks(#[from] GraphFault),
-    /// The folder can't be used.
     #[error(
         "{}: cannot be written to ({why}); choose another --out or make room and permission for it",
         .path.display()
     )]
-    Folder {
-        /// Which.
-        path: PathBuf,
-        /// The system's words.
-        why: io::Error,
-    },
-    /// Another run is at work there.
+    Folder { path: PathBuf, why: io::Error },
     #[error(
         "{}: another run works here ({}); wait for it or choose another --out",
         .path.display(), said(.holder.as_ref())
     )]
-    Busy {
-        /// Which folder.
-        path: PathBuf,
-        /// Who, if that can be read.
-        holder: Option<Holder>,
-    },
-    /// The folder is another part's.
+    Busy { path: PathBuf, holder: Option<Holder> },
     #[error(
         "{}: holds part {found} of a run, and this is part {asked}; give each part a folder of its own",
         .path.display()
     )]
-    OtherPart {
-        /// Which folder.
-        path: PathBuf,
-        /// Its part.
-        found: Shard,
-        /// The part that was asked for.
-        asked: Shard,
-    },
-    /// The part's mark can't be written.
+    OtherPart { path: PathBuf, found: Shard, asked: Shard },
     #[error(transparent)]
     Mark(#[from] WriteError),
 }

@@ -41,16 +41,10 @@ use crate::toml_file::{Fault, place};
 
 /// Why a pipeline can't be planned.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum PipelineError {
-    /// The file can't be read.
     #[error("{}: {why} (a pipeline file is TOML; `lunula init` writes one to start from)", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The system's words.
-        why: std::io::Error,
-    },
-    /// The file is wrong, perhaps in several places.
+    Unreadable { path: PathBuf, why: std::io::Error },
     #[error(
         "{}",
         faults
@@ -60,7 +54,6 @@ pub enum PipelineError {
             .join("\n")
     )]
     Faults {
-        /// The file.
         path: PathBuf,
         /// In the order of lines, at least one.
         faults: Vec<Fault>,

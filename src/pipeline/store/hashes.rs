@@ -93,27 +93,16 @@ impl TryFrom<String> for ContentHash {
 /// Why a file's content is not known.
 #[derive(Debug, Error)]
 pub(in crate::pipeline) enum FileFault {
-    /// Nothing of this name.
     #[error("{}: is not there; put it back, or correct the pipeline file", .0.display())]
     Missing(PathBuf),
-    /// There, but it can't be read.
     #[error("{}: cannot be read ({why})", .path.display())]
-    Unreadable {
-        /// Which.
-        path: PathBuf,
-        /// The system's words.
-        why: io::Error,
-    },
-    /// Somebody writes it.
+    Unreadable { path: PathBuf, why: io::Error },
     #[error("{}: changes as it is read; run again when it is whole", .0.display())]
     Changing(PathBuf),
-    /// A socket, a device, a pipe.
     #[error("{}: is neither a file nor a folder", .0.display())]
     Strange(PathBuf),
-    /// A folder that comes back to itself.
     #[error("{}: lies {DEEPEST} folders deep; look for a link that leads back to a folder above it", .0.display())]
     Deep(PathBuf),
-    /// A name that is no text.
     #[error("{}: its name is not UTF-8; rename it", .0.display())]
     Name(PathBuf),
 }

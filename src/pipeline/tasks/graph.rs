@@ -9,30 +9,16 @@ use crate::pipeline::tasks::{Source, Task, TaskId};
 
 /// Why tasks can't be worked through.
 #[derive(Debug, Error, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum GraphFault {
-    /// Not a folder's name.
     #[error("{0:?}: is no name for a task: it must be names with / between them, none of them empty, . or ..")]
     Name(TaskId),
-    /// Two of one name.
     #[error("{0}: two tasks have this name, so they would write the same files; name their stages or keys differently")]
     Twice(TaskId),
-    /// One's folder in another's.
     #[error("{inner}: lies in the folder of the task {outer}; name one of their stages differently")]
-    Within {
-        /// The one in it.
-        inner: TaskId,
-        /// The one around it.
-        outer: TaskId,
-    },
-    /// It needs what nobody makes.
+    Within { inner: TaskId, outer: TaskId },
     #[error("{task}: needs the result of {needs}, which is no task")]
-    Unknown {
-        /// Who needs it.
-        task: TaskId,
-        /// What is not there.
-        needs: TaskId,
-    },
-    /// They need each other.
+    Unknown { task: TaskId, needs: TaskId },
     #[error("tasks need one another in a circle: {}", .0.join(" needs "))]
     Circle(Vec<TaskId>),
 }

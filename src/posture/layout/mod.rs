@@ -136,35 +136,25 @@ pub struct Layout {
 
 /// Why there is no layout.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum LayoutError {
-    /// The file can't be read.
     #[error(
         "{}: {why} (a marker file is TOML; `lunula posture VIDEO --suggest` writes one to start from)",
         path.display()
     )]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The system's words.
-        why: std::io::Error,
-    },
-    /// The file is wrong, perhaps in several places.
+    Unreadable { path: PathBuf, why: std::io::Error },
     #[error(
         "{}",
         faults.iter().map(|f| format!("{}:{}: {}", path.display(), f.line, f.what)).collect::<Vec<_>>().join("\n")
     )]
     Faults {
-        /// The file.
         path: PathBuf,
         /// In the order of lines, at least one.
         faults: Vec<Fault>,
     },
     /// Joints were asked for that the file does not have.
     #[error("{what}")]
-    NoSuchJoint {
-        /// What is wrong and what to do.
-        what: String,
-    },
+    NoSuchJoint { what: String },
 }
 
 impl Layout {

@@ -68,16 +68,12 @@ const SKIN_DISTANCE: f64 = 45.0;
 /// Why nothing is suggested.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum SuggestError {
-    /// No spots.
     #[error(
         "nothing in the {frames} frames looked at looks like a marker: compact, of one colour that stands out and is \
          not skin's, there most of the time, on skin or moving; use stickers or paint of a colour that neither the \
          skin nor the background has, or write the marker file by hand (`[markers]`, `[segments]`, `[joints]`)"
     )]
-    Nothing {
-        /// Frames looked at.
-        frames: usize,
-    },
+    Nothing { frames: usize },
 }
 
 /// A spot and the colour that it was counted to.

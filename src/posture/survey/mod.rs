@@ -74,44 +74,25 @@ pub(crate) struct Survey {
 /// Why markers have no names.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum SurveyError {
-    /// No needed marker was seen.
     #[error(
         "none of the markers is seen in the {frames} frames looked at ({}); are their colours in the marker file those \
          of the video? `lunula posture VIDEO --suggest` measures them",
         markers.join(", ")
     )]
-    NoneSeen {
-        /// The needed markers.
-        markers: Vec<String>,
-        /// Frames looked at.
-        frames: usize,
-    },
-    /// Markers can be told apart neither by colour nor by their order along the finger.
+    NoneSeen { markers: Vec<String>, frames: usize },
     #[error(
         "can't tell which is which of the markers {} in the {frames} frames looked at; give their places in the first \
          frame under [start]{}; `lunula posture VIDEO --suggest` shows what has such colours",
         markers.join(", "),
         if *straight { ", or check `flexion`: the finger hardly bends" } else { "" }
     )]
-    Ambiguous {
-        /// The markers.
-        markers: Vec<String>,
-        /// Frames looked at.
-        frames: usize,
-        /// All fit as well from the other end of the finger.
-        straight: bool,
-    },
-    /// Markers of one colour lie on several fingers.
+    Ambiguous { markers: Vec<String>, frames: usize, straight: bool },
     #[error(
         "can't tell on which finger the markers {} are: fingers that share a mark or lie apart have the same colours; \
          give their places in the first frame under [start], one on each finger at least",
         markers.join(", ")
     )]
-    Branches {
-        /// The markers.
-        markers: Vec<String>,
-    },
-    /// There is nothing of a marker's colour where `[start]` has it.
+    Branches { markers: Vec<String> },
     #[error(
         "[start] has {marker} at ({:.0}, {:.0}), where the first frame has {} and no mark of {colour}{}; correct the \
          place, or the colour under [markers]",
@@ -121,9 +102,7 @@ pub(crate) enum SurveyError {
             {y:.0}))"))
     )]
     WrongStart {
-        /// The marker.
         marker: String,
-        /// Its colour in the marker file.
         colour: String,
         /// Its place, on the shown picture.
         at_px: [f64; 2],

@@ -20,22 +20,15 @@ const MOST_S: f64 = 3600.0;
 
 /// Why there is no protocol.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ProtocolError {
-    /// The file can't be read.
     #[error("{}: {why} (`lunula prompt --write-protocol FILE` writes one to start from)", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The system's words.
-        why: std::io::Error,
-    },
-    /// The file is wrong, perhaps in several places.
+    Unreadable { path: PathBuf, why: std::io::Error },
     #[error(
         "{}",
         faults.iter().map(|f| format!("{}:{}: {}", path.display(), f.line, f.what)).collect::<Vec<_>>().join("\n")
     )]
     Faults {
-        /// The file.
         path: PathBuf,
         /// In the order of lines, at least one.
         faults: Vec<Fault>,

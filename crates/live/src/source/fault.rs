@@ -6,37 +6,14 @@ use crate::wire::WireFault;
 
 /// Why there is no stream, and what to do.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum SourceFault {
-    /// The address is none.
     #[error("`{text}` is no source: {what}")]
-    Address {
-        /// As it was written.
-        text: String,
-        /// What is wrong.
-        what: String,
-    },
-    /// A port or a file cannot be opened.
+    Address { text: String, what: String },
     #[error("{source_name}: {what}")]
-    Open {
-        /// The source.
-        source_name: String,
-        /// What is wrong, and what to do.
-        what: String,
-    },
-    /// What comes cannot be decoded.
+    Open { source_name: String, what: String },
     #[error("{source_name}: {fault}")]
-    Wire {
-        /// The source.
-        source_name: String,
-        /// What is wrong.
-        fault: WireFault,
-    },
-    /// A file cannot be read any more.
+    Wire { source_name: String, fault: WireFault },
     #[error("{path}: cannot be read ({why})", path = path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        why: std::io::Error,
-    },
+    Read { path: PathBuf, why: std::io::Error },
 }

@@ -2,15 +2,14 @@
 
 /// Why a stream cannot be decoded at all.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum WireFault {
     /// The columns have names that nobody has a use for.
     #[error("line {line} names the columns {names}: {why}")]
     Naming {
         /// The line of names; 0 where they were given beforehand.
         line: u64,
-        /// The names.
         names: String,
-        /// What is wrong, and what to do.
         why: String,
     },
     /// A stream names other columns, or its columns in another order, than its rows before.
@@ -18,69 +17,39 @@ pub enum WireFault {
         "line {line} names the columns {names}, and the rows before it are {before}: the device started again with \
          other columns, and its rows are not read from there on; make a recording of its own for them"
     )]
-    OtherNames {
-        /// The line of names.
-        line: u64,
-        /// The names in it.
-        names: String,
-        /// The names of the rows before it.
-        before: String,
-    },
+    OtherNames { line: u64, names: String, before: String },
     /// A stream names its columns in another order than the names that were given.
     #[error(
         "line {line} names the columns {names}, and --names gives them in another order, {given}; leave --names out, \
          or give them in the order of the stream (--columns P1=P2,P2=P1 exchanges two)"
     )]
-    OtherOrder {
-        /// The line of names.
-        line: u64,
-        /// The names in it.
-        names: String,
-        /// The names that were given.
-        given: String,
-    },
-    /// Rows come that have not as many cells as names were given.
+    OtherOrder { line: u64, names: String, given: String },
     #[error("line {line} has {cells} cells, and --names gives {names}; give as many names as cells")]
     OtherCells {
         /// Which line, the last.
         line: u64,
-        /// Its cells.
         cells: usize,
-        /// The names.
         names: usize,
     },
-    /// Rows come, and nothing says what their columns are.
     #[error(
         "line {line} holds numbers (`{text}`) and no line of names came before it: begin with a line such as \
          time_us,n,led,P1,P2 (reset the device if it writes one when it starts), or give the names with --names"
     )]
-    NoNames {
-        /// A line of numbers.
-        line: u64,
-        /// How it begins.
-        text: String,
-    },
-    /// What comes is no text.
+    NoNames { line: u64, text: String },
     #[error(
         "what comes is no text (it begins with `{text}`): this looks like a wrong baud rate; write the device's own, \
          as in `?baud=115200`, or `form=frames` if it sends frames"
     )]
-    Garbled {
-        /// How it begins.
-        text: String,
-    },
-    /// Bytes come and no frame is among them.
+    Garbled { text: String },
     #[error(
         "{bytes} bytes came and no whole frame (such as {text}): this looks like a wrong baud rate; write the \
          device's own, as in `?baud=460800`, or `form=lines` if it sends lines"
     )]
     NoFrames {
-        /// How many bytes came.
         bytes: u64,
         /// Some of them, in hexadecimal.
         text: String,
     },
-    /// The stream ended before the names of its columns.
     #[error("ends before a line of names; begin with a line such as time_s,P1,P2")]
     Empty,
 }

@@ -18,24 +18,16 @@ use lunula::stages::{Stage, Stages};
 
 /// Why a study was not written.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum StudyError {
-    /// Something that this job did not write stands in the way.
     #[error("{} stands already and is no synthetic study's; choose another --out", .0.display())]
     InTheWay(PathBuf),
-    /// A file or folder could not be written.
     #[error(transparent)]
     Write(#[from] Unwritten),
-    /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
-    /// A recording could not be made.
     #[error("{name}: {why}")]
-    Recording {
-        /// The recording's folder.
-        name: String,
-        /// Why.
-        why: anyhow::Error,
-    },
+    Recording { name: String, why: anyhow::Error },
     /// Stopped from outside; nothing was left behind.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),

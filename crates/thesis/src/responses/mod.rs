@@ -100,37 +100,23 @@ pub(crate) struct ResponsesFigures {
 /// Why there are no responses.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ResponsesError {
-    /// Options that can't be.
     #[error("{0}")]
     Request(String),
-    /// A table can't be read.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A log can't be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A file lacks a column.
     #[error("{}: {what}", path.display())]
-    Columns {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// Nothing goes up and down.
+    Columns { path: PathBuf, what: String },
     #[error("{files}: {drive} makes no whole cycle ({why}); give a recording in which it goes there and back")]
     NoCycle {
-        /// The files.
         files: String,
-        /// What was to go up and down.
         drive: String,
         /// What it does instead.
         why: String,
     },
-    /// The results can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }

@@ -94,11 +94,10 @@ impl AxisUnknown {
 
 /// Why the axis of a nail is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum AxisDoubt {
-    /// The outline lies outside the photograph.
     #[error("the nail's outline lies outside of the photograph")]
     Outside,
-    /// The outline is too small to show a finger.
     #[error("the nail is {length_px:.1} px long, too small to see the finger's direction")]
     TooSmall {
         /// Long axis of the outline, pixels.

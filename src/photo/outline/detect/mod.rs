@@ -118,21 +118,15 @@ pub struct Detected {
 
 /// Why no nail was found with confidence.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum NothingFound {
-    /// The picture is too small to show one.
     #[error("the picture is too small to find a nail on; it needs at least {least} x {least} pixels", least = LEAST_PX)]
     TooSmall,
-    /// Nothing looks like a nail.
     #[error("nothing on the picture looks like a nail")]
     NoPlace,
     /// Something does, but not surely enough.
     #[error("what looks most like a nail is doubtful (confidence {best:.2}, {needed:.2} is needed)")]
-    Doubtful {
-        /// The highest confidence.
-        best: f64,
-        /// The least that was asked for.
-        needed: f64,
-    },
+    Doubtful { best: f64, needed: f64 },
 }
 
 /// What was found on one photograph, none overlapping another, the surest first.

@@ -16,11 +16,10 @@ const NAME: &str = "lunula fingernail mouse";
 
 /// Why there is no mouse, or why it stopped.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum UinputFault {
-    /// None can be made here.
     #[error("{}; {}", .0.found(), .0.remedy())]
     Unavailable(UinputState),
-    /// The kernel refused the device or an event.
     #[error("the kernel's mouse: {0}")]
     Kernel(#[from] io::Error),
 }
