@@ -71,9 +71,6 @@ impl Cells {
 }
 
 /// Joins the sets in `at`, which is to stand at `path`; returns how many rows there are.
-///
-/// # Errors
-/// [`JoinError`].
 pub(super) fn join(sets: &[PathBuf], at: &Path, path: &Path) -> Result<usize, JoinError> {
     let sets = sets.iter().map(|set| Set::read(set)).collect::<Result<Vec<_>, _>>()?;
     let mut sets: Vec<Set> = sets.into_iter().flatten().collect();

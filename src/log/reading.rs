@@ -120,9 +120,6 @@ impl LogReading {
     }
 
     /// Reads a log and takes the ambient light away.
-    ///
-    /// # Errors
-    /// [`LogError`].
     pub fn lit_rows(&self, path: &Path) -> Result<LitRows, LogError> {
         let log = Log::read(path, &self.columns)?;
         let samples = samples(&log, &self.ambient)?;

@@ -149,9 +149,6 @@ const FIRST_BYTES: u64 = 64;
 
 impl Photograph {
     /// Reads, decodes and turns upright; as [`Photograph::read_up_to`] with [`MOST_MEGAPIXELS`].
-    ///
-    /// # Errors
-    /// See there.
     pub fn read(path: &Path) -> Result<Self, ReadFault> {
         Self::read_up_to(path, MOST_MEGAPIXELS)
     }

@@ -106,9 +106,6 @@ pub enum AmbientError {
 }
 
 /// Takes the ambient light away.
-///
-/// # Errors
-/// [`AmbientError`].
 pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientError> {
     if let Some(ends) = options.full_scale_v {
         check_full_scale(ends)?;

@@ -79,9 +79,6 @@ impl Npz {
     }
 
     /// A one-dimensional array of bytes, of at most `most`.
-    ///
-    /// # Errors
-    /// In words.
     pub(super) fn text(&mut self, name: &str, most: u64) -> Result<Vec<u8>, String> {
         let bytes = self.bytes(name, most)?;
         let text = npy::parse::<u8, Ix1>(&bytes).map_err(|why| format!("`{name}`: {why}"))?;

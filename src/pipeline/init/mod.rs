@@ -25,9 +25,6 @@ pub enum InitError {
 
 /// Writes a pipeline for what lies in `folder`; `from` is that folder as the pipeline file will name it, with `/`,
 /// empty for its own.
-///
-/// # Errors
-/// [`InitError`].
 pub fn propose(folder: &Path, from: &str) -> Result<String, InitError> {
     let found = look::look(folder).map_err(|why| InitError::Unreadable { path: folder.to_owned(), why })?;
     write::pipeline(&found, from).ok_or_else(|| {

@@ -44,9 +44,6 @@ struct Wild {
 
 impl Pattern {
     /// Takes a pattern apart.
-    ///
-    /// # Errors
-    /// What is wrong with it.
     pub(in crate::pipeline) fn parse(text: &str) -> Result<Self, String> {
         let (body, folders) = text.strip_suffix('/').map_or((text, false), |body| (body, true));
         let mut parts = Vec::new();

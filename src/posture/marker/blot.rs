@@ -153,9 +153,6 @@ impl Blot {
     }
 
     /// The outline of the mark about `near_px`.
-    ///
-    /// # Errors
-    /// Why it has none.
     pub(crate) fn outline(&self, frame: &Frame<'_>, siting: Siting, near_px: [f64; 2]) -> Result<Outline, Loss> {
         let radius_px = (self.area_px2 / std::f64::consts::PI).sqrt();
         let reach_px = 2.0 * self.spread_px2[0].sqrt() + SURROUND_PX as f64 + 5.0;

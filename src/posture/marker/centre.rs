@@ -72,9 +72,6 @@ impl Scratch {
 }
 
 /// The centre of the marker of this `look` within a few pixels of `near_px`.
-///
-/// # Errors
-/// Why it has none.
 pub(crate) fn centre(
     frame: &Frame<'_>,
     siting: Siting,

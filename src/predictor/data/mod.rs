@@ -286,9 +286,6 @@ pub(crate) fn contradictions(data: &Dataset, parts: &[Range<usize>], names: &[&s
 
 /// Reads the voltages of `inputs` from a table or raw log, read as `log` says; targets need not be there. With
 /// `drop_invalid`, a cell that is no finite number is NaN rather than an error.
-///
-/// # Errors
-/// [`DataError`].
 pub fn read_inputs(path: &Path, inputs: &[String], rows: &RowOptions) -> Result<Inputs, DataError> {
     if inputs.is_empty() {
         return Err(DataError::Request("no photodiode is given".to_owned()));

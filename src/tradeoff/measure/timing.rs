@@ -63,9 +63,6 @@ pub(in crate::tradeoff) type Run<T> = anyhow::Result<(f64, Option<T>)>;
 
 /// Runs every setting as often as `effort` says, all of them once, then all again. `run` gets whether it is the
 /// setting's first run, and has to give its result then. A setting that fails runs no more.
-///
-/// # Errors
-/// [`Interrupted`].
 pub(in crate::tradeoff) fn in_turns<S, T>(
     settings: &[S],
     effort: &Effort,

@@ -145,9 +145,6 @@ impl Law {
 
 impl Curve {
     /// Fits a curve to the means of trials.
-    ///
-    /// # Errors
-    /// [`NoCurve`].
     pub fn fit(law: Law, points: &[Point]) -> Result<Self, NoCurve> {
         let m = points.len();
         if m < FEWEST_TRIALS {

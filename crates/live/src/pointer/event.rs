@@ -90,9 +90,6 @@ pub enum What {
 
 impl Event {
     /// A line of JSON: `{"t":1.25,"event":"move","dx":1,"dy":0}`. Nothing is allocated.
-    ///
-    /// # Errors
-    /// The writer's.
     pub fn write_json(&self, to: &mut impl Write) -> io::Result<()> {
         serde_json::to_writer(&mut *to, self)?;
         to.write_all(b"\n")

@@ -20,9 +20,6 @@ pub trait Rows: Send {
     fn next(&mut self, cells: &mut [f64], texts: &mut [Vec<u8>]) -> Result<bool, String>;
 
     /// Begins again, or says that it can't.
-    ///
-    /// # Errors
-    /// What is wrong.
     fn rewind(&mut self) -> Result<(), String> {
         Err("it can be played once only; leave out `loop`".to_owned())
     }
@@ -59,9 +56,6 @@ impl Table {
     }
 
     /// The next step; none after the last row.
-    ///
-    /// # Errors
-    /// What is wrong.
     pub(in crate::source) fn next(&mut self) -> Result<Option<Step>, String> {
         if let Some(mut naming) = self.naming.take() {
             self.decoded.name(&mut naming).map_err(|why| why.to_string())?;

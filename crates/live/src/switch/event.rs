@@ -51,9 +51,6 @@ pub struct SwitchEvent {
 impl SwitchEvent {
     /// A line of JSON: `{"t":12.08,"event":"press","reason":"value","finger":"index","switch":"x+","force_N":0.61,
     /// "delay_s":0.04}`; what is not known is left out, `value` is the key of the value. Nothing is allocated.
-    ///
-    /// # Errors
-    /// The writer's.
     pub fn write_json(
         &self,
         to: &mut impl Write,

@@ -87,9 +87,6 @@ pub enum TuneFault {
 }
 
 /// Chooses thresholds and holds.
-///
-/// # Errors
-/// [`TuneFault`].
 pub fn tune(traces: &[Trace], goal: &Goal) -> Result<Tuned, TuneFault> {
     let levels = levels(traces)?;
     let configs = configs(&levels, period_s(traces), goal);

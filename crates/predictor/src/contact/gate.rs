@@ -57,9 +57,6 @@ impl Gate {
     /// `f_min_n`: the normal force from which on the finger touches, newtons, above 0; `theta_touch_deg`: its angle
     /// then, degrees (the thesis' is 0, 5.2.2); `hysteresis_n`: by how much the force must fall below F_min to end a
     /// touch, newtons.
-    ///
-    /// # Errors
-    /// [`GateFault`].
     pub fn new(f_min_n: f64, theta_touch_deg: f64, hysteresis_n: f64) -> Result<Self, GateFault> {
         if !(f_min_n.is_finite() && f_min_n > 0.0) {
             return Err(GateFault::Threshold(f_min_n));

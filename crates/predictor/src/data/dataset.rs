@@ -60,9 +60,6 @@ pub enum DatasetFault {
 impl Dataset {
     /// Checks and takes rows: `x` rows x inputs, `y` rows x targets, the time of each row within its recording in
     /// seconds (it may be NaN where it is not known).
-    ///
-    /// # Errors
-    /// [`DatasetFault`].
     pub fn new(
         inputs: Vec<String>,
         targets: Vec<String>,
@@ -81,9 +78,6 @@ impl Dataset {
 
     /// The same of rows some of whose inputs are not known: NaN, cells of a nail that are hidden. Only
     /// [`Kind::Eigennails`](crate::Kind::Eigennails) is fitted to such rows.
-    ///
-    /// # Errors
-    /// [`DatasetFault`].
     pub fn with_hidden(
         inputs: Vec<String>,
         targets: Vec<String>,
@@ -124,9 +118,6 @@ impl Dataset {
     }
 
     /// One recording without a name, evenly sampled from time 0.
-    ///
-    /// # Errors
-    /// [`DatasetFault`].
     pub fn plain(
         inputs: Vec<String>,
         targets: Vec<String>,

@@ -63,9 +63,6 @@ pub fn coverage(residuals: ArrayView2<f64>, intervals: &Intervals, name: &str) -
 /// Each group's coverage by intervals calibrated on the other groups' out-of-fold residuals (of [`cross_validate`];
 /// `groups`: name and rows of each). It costs no fit. But the models that gave the others' residuals have seen the
 /// group: [`nested_coverage`] is strict.
-///
-/// # Errors
-/// [`IntervalFault`].
 pub fn cross_coverage(
     residuals: ArrayView2<f64>,
     groups: &[(String, Vec<usize>)],
@@ -87,9 +84,6 @@ pub fn cross_coverage(
 /// Each group's coverage by a model and intervals that have not seen it: the group is set aside, the others are
 /// cross-validated among themselves for the half widths, the model is fitted to all of them and predicts the group.
 /// Fits as many times as there are groups, squared.
-///
-/// # Errors
-/// [`IntervalFault`].
 pub fn nested_coverage<P, E: Display>(
     data: &Dataset,
     by: By,

@@ -48,9 +48,6 @@ pub enum LearningFault {
 }
 
 /// Trains on the first recording, the first two, .. all, and scores on `held_out`.
-///
-/// # Errors
-/// [`LearningFault`].
 pub fn learn_by_recordings<P, E: Display>(
     train: &Dataset,
     held_out: &Dataset,
@@ -68,9 +65,6 @@ pub fn learn_by_recordings<P, E: Display>(
 
 /// Trains on the first shares of each recording's time, and scores on `held_out`. Of a recording whose times are not
 /// known or do not ascend, the share of its rows is taken.
-///
-/// # Errors
-/// [`LearningFault`].
 pub fn learn_by_share<P, E: Display>(
     train: &Dataset,
     held_out: &Dataset,

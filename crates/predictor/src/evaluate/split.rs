@@ -59,9 +59,6 @@ pub enum SplitFault {
 }
 
 /// The folds of a set, in the order in which their recordings first come.
-///
-/// # Errors
-/// [`SplitFault`].
 pub fn folds(data: &Dataset, by: By) -> Result<Vec<Fold>, SplitFault> {
     if data.rows() == 0 {
         return Err(SplitFault::Empty);

@@ -5,9 +5,6 @@ use super::{FitFault, FitReport};
 use crate::{Dataset, LeastSquaresOptions, Linear, least_squares};
 
 /// Fits y = y_m + J (P - m).
-///
-/// # Errors
-/// [`FitFault`].
 pub fn fit_linear(data: &Dataset, options: &LeastSquaresOptions) -> Result<(Linear, FitReport), FitFault> {
     let fit = least_squares(data.x().view(), data.y().view(), options)
         .map_err(|fault| named(fault, data.inputs(), data.targets(), data.inputs().len()))?;

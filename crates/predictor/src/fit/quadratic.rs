@@ -11,9 +11,6 @@ use crate::{Dataset, LeastSquaresOptions, Quadratic, Solver, least_squares, quad
 /// Fits y = y_m + J T(u). Standard errors are of coefficients of u.
 ///
 /// With [`Solver::Normal`] the terms are equation 16's own, of P: m is 0, s is 1.
-///
-/// # Errors
-/// [`FitFault`].
 pub fn fit_quadratic(data: &Dataset, options: &LeastSquaresOptions) -> Result<(Quadratic, FitReport), FitFault> {
     let inputs = data.inputs().len();
     let pairs = quadratic_terms(inputs);

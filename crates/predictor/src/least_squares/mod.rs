@@ -150,9 +150,6 @@ impl LeastSquares {
 }
 
 /// Fits `targets` (rows x targets) to `design` (rows x columns, no column of ones).
-///
-/// # Errors
-/// [`LeastSquaresFault`].
 pub fn least_squares(
     design: ArrayView2<'_, f64>,
     targets: ArrayView2<'_, f64>,

@@ -23,9 +23,6 @@ pub struct Linear {
 
 impl Linear {
     /// `centre`: m, volts, an input each; `offset`: y_m, a target each; `jacobian`: J, targets x inputs.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     pub fn new(centre: Vec<f64>, offset: Vec<f64>, jacobian: Array2<f64>) -> Result<Self, ModelFault> {
         super::sizes(&[("offsets", offset.len(), jacobian.nrows()), ("centres", centre.len(), jacobian.ncols())])?;
         super::finite(&[("centre", &centre), ("offset", &offset)])?;

@@ -52,9 +52,6 @@ impl Network {
     /// `centre`: m, volts, and `scale`: s, volts, positive, an input each; `hidden_weights`: W_P, nodes x inputs;
     /// `hidden_biases`: b_H; `output_weights`: W_H, targets x nodes; `output_biases`: b_F; `target_centre`: y_m and
     /// `target_scale`: y_s, positive, a target each.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     #[allow(clippy::too_many_arguments, reason = "the letters of two equations")]
     pub fn new(
         centre: Vec<f64>,

@@ -35,9 +35,6 @@ pub struct Quadratic {
 
 impl Quadratic {
     /// `centre`: m, volts; `scale`: s, volts, powers of two; `offset`: y at the centre; `jacobian`: J, targets x terms.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     pub fn new(centre: Vec<f64>, scale: Vec<f64>, offset: Vec<f64>, jacobian: Array2<f64>) -> Result<Self, ModelFault> {
         let inputs = centre.len();
         let terms = inputs + inputs * (inputs + 1) / 2;

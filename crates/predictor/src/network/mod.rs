@@ -125,9 +125,6 @@ pub enum TrainFault {
 
 /// Trains a network on `data`, stopped by `stop`; without, it runs until it converges, which fits the noise too where
 /// rows are few.
-///
-/// # Errors
-/// [`TrainFault`].
 pub fn train_network(
     data: &Dataset,
     stop: Option<&Dataset>,

@@ -135,9 +135,6 @@ impl Predictor {
     }
 
     /// Reads the text of a model file.
-    ///
-    /// # Errors
-    /// [`FileFault`].
     pub fn from_json(text: &str) -> Result<Opened, FileFault> {
         if !text.trim_start().starts_with('{') {
             // A table, say: what is wrong with it as JSON helps nobody.

@@ -101,9 +101,6 @@ pub struct Predictor {
 
 impl Predictor {
     /// Fits a recipe to recordings; a network stops early on `stop`, or on a part of the rows.
-    ///
-    /// # Errors
-    /// [`RecipeFault`].
     pub fn fit(data: &Dataset, stop: Option<&Dataset>, recipe: &Recipe) -> Result<Self, RecipeFault> {
         let cone = recipe.cone(data.targets())?;
         let lags = recipe.lags(data)?;

@@ -154,9 +154,6 @@ impl Recipe {
 
     /// Fits to rows that have their lags already ([`with_lags`]); a network stops early on `stop`, or on a part of the
     /// rows.
-    ///
-    /// # Errors
-    /// [`RecipeFault`].
     pub fn fit(&self, data: &Dataset, stop: Option<&Dataset>) -> Result<Fitted, RecipeFault> {
         let options = LeastSquaresOptions { deficient: self.deficient, ..LeastSquaresOptions::default() };
         Ok(match self.kind {

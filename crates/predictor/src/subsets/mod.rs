@@ -105,9 +105,6 @@ pub enum SubsetFault {
 
 /// Looks at every non-empty subset of at most [`MOST_INPUTS`] photodiodes. The result does not depend on the number of
 /// threads.
-///
-/// # Errors
-/// [`SubsetFault`].
 pub fn every_subset(train: &Dataset, validate: &Dataset) -> Result<Subsets, SubsetFault> {
     check(train, validate, MOST_INPUTS)?;
     let inputs = train.inputs().len();
@@ -135,9 +132,6 @@ pub fn every_subset(train: &Dataset, validate: &Dataset) -> Result<Subsets, Subs
 /// Removes the photodiode that is missed least, again and again: the subsets of all, all but one, .. one. Not every
 /// subset is looked at, so the best of a size may be missed; for more photodiodes than [`MOST_INPUTS`], at most 32.
 /// While photodiodes are dependent, those that others stand for go first.
-///
-/// # Errors
-/// [`SubsetFault`].
 pub fn backward_elimination(train: &Dataset, validate: &Dataset) -> Result<Vec<Subset>, SubsetFault> {
     check(train, validate, 32)?;
     let rows = Compressed::new(train, validate);

@@ -53,9 +53,6 @@ impl Default for ForceSpace {
 
 impl ForceSpace {
     /// The cone up to `fz_max_n` newtons with the coefficient of friction `mu`.
-    ///
-    /// # Errors
-    /// [`ForceSpaceFault`].
     pub fn new(fz_max_n: f64, mu: f64) -> Result<Self, ForceSpaceFault> {
         let holds = |value: f64| value.is_finite() && value > 0.0;
         if !holds(fz_max_n) {

@@ -122,9 +122,6 @@ pub(crate) enum ResponsesError {
 }
 
 /// Finds the responses and writes them into `out`.
-///
-/// # Errors
-/// [`ResponsesError`].
 pub(crate) fn responses(
     files: &[DataFile],
     options: &ResponsesOptions,

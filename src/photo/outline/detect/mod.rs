@@ -163,9 +163,6 @@ const PLACES: usize = 5;
 const SHARED: f64 = 0.25;
 
 /// Finds the nails on an upright photograph. The same photograph and options give the same result, always.
-///
-/// # Errors
-/// [`VisionError`] where OpenCV fails.
 pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detections, VisionError> {
     if image.width().min(image.height()) < LEAST_PX {
         let note = Some(NothingFound::TooSmall);
@@ -183,9 +180,6 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detection
 
 /// What the network surely sees instead of each outline that a person drew on an upright photograph, where there is one
 /// and it does.
-///
-/// # Errors
-/// [`VisionError`] where OpenCV fails.
 pub fn unlike(image: &DynamicImage, outlines: &[Option<&Outline>]) -> Result<Vec<Option<Unlike>>, VisionError> {
     match outlines.iter().all(Option::is_none) {
         true => Ok(vec![None; outlines.len()]),
@@ -194,9 +188,6 @@ pub fn unlike(image: &DynamicImage, outlines: &[Option<&Outline>]) -> Result<Vec
 }
 
 /// By this network.
-///
-/// # Errors
-/// [`VisionError`].
 #[doc(hidden)]
 pub fn detect_by(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Detections, VisionError> {
     let needed = options.min_confidence.unwrap_or(net.confident.max(DOUBTED));

@@ -81,9 +81,6 @@ pub enum LagFault {
 impl Lags {
     /// Lags in seconds, in the order in which the inputs shall come, and the longest gap between two rows that is
     /// interpolated over.
-    ///
-    /// # Errors
-    /// [`LagFault`].
     pub fn new(lags_s: Vec<f64>, longest_gap_s: f64) -> Result<Self, LagFault> {
         let repeated = |k: usize| lags_s[..k].contains(&lags_s[k]);
         let bad = |k: &usize| !(lags_s[*k].is_finite() && lags_s[*k] > 0.0) || repeated(*k);
@@ -100,9 +97,6 @@ impl Lags {
     }
 
     /// Lags over gaps of at most twice the median step of a set's rows.
-    ///
-    /// # Errors
-    /// [`LagFault`].
     pub fn of(lags_s: Vec<f64>, data: &Dataset) -> Result<Self, LagFault> {
         let mut steps = Vec::new();
         for one in data.recordings() {

@@ -67,9 +67,6 @@ pub struct EigennailsReport {
 }
 
 /// Fits modes (`asked`, or as many as do best on what is left out) and a regression on their scores.
-///
-/// # Errors
-/// [`FitFault`].
 pub fn fit_eigennails(
     data: &Dataset,
     on_scores: OnScores,

@@ -45,9 +45,6 @@ pub struct Projection {
 impl Basis {
     /// `mean`: a cell each; `modes`: modes x cells, of length 1; `spread`: SD of the scores, a mode each, above 0;
     /// `noise`: variance of a cell that no mode explains. All in the cells' unit.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     pub fn new(mean: Vec<f64>, modes: Array2<f64>, spread: Vec<f64>, noise: f64) -> Result<Self, ModelFault> {
         sizes(&[("cells of the modes", modes.ncols(), mean.len()), ("modes", modes.nrows(), spread.len())])?;
         finite(&[("mean", &mean), ("noise", &[noise])])?;

@@ -45,9 +45,6 @@ pub struct Eigennails {
 
 impl Eigennails {
     /// `ranges`: the lowest and the highest score of the training rows, a mode each.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     pub fn new(basis: Basis, regression: Regression, ranges: Vec<[f64; 2]>) -> Result<Self, ModelFault> {
         let modes = match &regression {
             Regression::Ridge(ridge) => ridge.coefficients.ncols(),

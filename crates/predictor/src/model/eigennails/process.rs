@@ -50,9 +50,6 @@ pub struct Process {
 
 impl Process {
     /// `rows`: rows x modes, whitened by `spread`, the SD of the scores; `targets`: rows x targets.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     pub fn new(
         rows: Array2<f64>,
         targets: Array2<f64>,

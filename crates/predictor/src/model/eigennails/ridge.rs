@@ -28,9 +28,6 @@ impl Ridge {
     /// `coefficients`: targets x modes, a target's unit for each unit of the cells; `offset`: the targets' means;
     /// `lambda`: a target each, the cells' unit squared; `residual_sd`: of rows not trained on, a target each; `rows`:
     /// trained on; `spread`: SD of the scores.
-    ///
-    /// # Errors
-    /// [`ModelFault`].
     pub fn new(
         coefficients: Array2<f64>,
         offset: Vec<f64>,

@@ -124,9 +124,6 @@ pub struct LayoutProblem {
 
 impl LayoutProblem {
     /// `noise_sd`: what a photodiode adds to each reading of its own, in the readings' unit.
-    ///
-    /// # Errors
-    /// [`LayoutFault`].
     pub fn new(
         criterion: Criterion,
         candidates: &[Candidate],

@@ -122,9 +122,6 @@ impl NailNet {
     }
 
     /// The nails of an upright photograph, none over another, the most probable first; and what isn't one after all.
-    ///
-    /// # Errors
-    /// [`VisionError`].
     pub fn segments(&self, image: &DynamicImage) -> Result<(Vec<Segment>, Vec<Refused>), VisionError> {
         let rgb = &*as_rgb8(image);
         let (mut found, mut refused) = (Vec::new(), Vec::new());

@@ -36,9 +36,6 @@ const LARGE_PX: f64 = 30.0;
 impl NailNet {
     /// What is seen instead of each outline on an upright photograph; `None` where nothing speaks against it, or there
     /// is none.
-    ///
-    /// # Errors
-    /// [`VisionError`].
     pub fn unlike(
         &self,
         image: &DynamicImage,
