@@ -7,7 +7,6 @@ fn run(dir: &Dir, command: &str, options: &str) -> Answer {
     dir.words(&format!("{command} {options}"))
 }
 
-/// A parameter of a parameter file.
 fn parameter(dir: &Dir, file: &str, name: &str) -> f64 {
     let text = dir.text(file);
     let value = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(" = "));

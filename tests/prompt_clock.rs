@@ -40,7 +40,6 @@ fn sheet(dir: &Dir, times_s: &[f64]) -> GrayImage {
     image::open(dir.path("sheet.png")).expect("a picture").to_luma8()
 }
 
-/// A frame with the panel on it.
 fn with_panel(frame: &Frame<'_>, sheet: &GrayImage, k: usize) -> Picture {
     let (width, height) = (frame.luma.width, frame.luma.height);
     let mut picture = Picture::new(Format { width, height, subsampling: Some((2, 2)), depth: 8 });

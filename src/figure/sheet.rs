@@ -186,18 +186,12 @@ impl Sheet {
     }
 
     /// The sheet as a PNG file, of one channel with a palette unless something on it is in colour.
-    ///
-    /// # Errors
-    /// Where it can't be encoded.
     pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
         let is_grey = self.tiles.iter().all(|tile| tile.picture.is_grey());
         if is_grey { super::png_of_levels(&self.draw(), UNKNOWN) } else { super::png(&self.draw::<Rgb<u8>>().into()) }
     }
 
     /// The sheet as SVG: pictures embedded, words as words.
-    ///
-    /// # Errors
-    /// Where a picture can't be encoded.
     pub fn svg(&self) -> Result<String, image::ImageError> {
         let layout = self.layout();
         let [width, height] = layout.size;

@@ -7,9 +7,6 @@ use crate::table::{Table, TableError};
 
 /// The root mean square error of every `<joint>_deg` of `made` that `truth` has too. Rows belong together where
 /// `made`'s column `key` and `truth`'s column `true_key` agree to within `close`; both ascend.
-///
-/// # Errors
-/// A table that can't be read.
 pub fn against(truth: &Path, true_key: &str, made: &Path, key: &str, close: f64) -> Result<Vec<Quality>, TableError> {
     let (truth, made) = (Table::read(truth)?, Table::read(made)?);
     let (true_at, at) = (truth.numbers(true_key)?, made.numbers(key)?);

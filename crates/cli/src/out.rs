@@ -20,7 +20,6 @@ fn has_failed() -> bool {
     FAILED.lock().unwrap_or_else(PoisonError::into_inner).is_some()
 }
 
-/// A line.
 pub(super) fn print_line(text: &str) {
     print(format!("{text}\n").as_bytes());
 }

@@ -20,9 +20,6 @@ fn texts(table: &Table, name: &str) -> Result<Vec<String>, TableError> {
 
 /// Of an evaluation's folder: by target `rmse`, `r2`; from its predictions `rmse_over_sd` and `rmse_bending`, that of
 /// rows without any force.
-///
-/// # Errors
-/// A table that can't be read.
 pub(crate) fn evaluation_numbers(folder: &Path) -> Result<Numbers, TableError> {
     let mut numbers = Numbers::default();
     let merit = folder.join("merit.csv");
@@ -72,9 +69,6 @@ const REST_N: f64 = 0.05;
 /// Of an analysis' folder: `least_over_greatest` of the singular values, `least_dominance`, the least share that a
 /// mode's greatest force has of the mode, `different_forces`, how many forces dominate one, `greatest_photodiode`, the
 /// greatest share that one photodiode has of a mode.
-///
-/// # Errors
-/// A table that can't be read.
 pub(crate) fn modes_numbers(folder: &Path) -> Result<Numbers, TableError> {
     let mut numbers = Numbers::default();
     let path = folder.join("modes.csv");
@@ -110,9 +104,6 @@ pub(crate) fn modes_numbers(folder: &Path) -> Result<Numbers, TableError> {
 
 /// Of a comparison's folder: `<figure>.<group>.<series>`, RMSE, mean over people, networks called `network`; and what
 /// 5.4 and 5.5 say of them together.
-///
-/// # Errors
-/// A table that can't be read.
 pub(crate) fn compare_numbers(folder: &Path) -> Result<Numbers, TableError> {
     let mut numbers = Numbers::default();
     let path = folder.join("comparisons.csv");

@@ -29,9 +29,6 @@ pub(crate) struct Guard {
 
 impl Guard {
     /// Of a server at `port`; `names` are what it is called beside its loopback addresses.
-    ///
-    /// # Errors
-    /// The system gives no random numbers.
     pub(crate) fn new(port: u16, names: &[String]) -> Result<Self, getrandom::Error> {
         let own = ["127.0.0.1", "localhost", "[::1]"].into_iter().chain(names.iter().map(String::as_str));
         Ok(Self {

@@ -13,9 +13,6 @@ pub(crate) struct Token(String);
 
 impl Token {
     /// A new one.
-    ///
-    /// # Errors
-    /// The system gives no random numbers.
     pub(crate) fn random() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; BYTES];
         getrandom::fill(&mut bytes)?;

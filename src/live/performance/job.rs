@@ -18,7 +18,6 @@ use crate::median::median_of;
 use crate::stages::{Stages, Step, left_out};
 use crate::words::{instead, twins};
 
-/// The figures.
 pub(super) const FIGURES: &str = "performance.json";
 /// The report, with places and times.
 const REPORT: &str = "run.json";

@@ -16,7 +16,6 @@ const COUNTERS: [&str; 4] = ["n", "counter", "seq", "sequence"];
 /// A tracker's, beside the columns of logs.
 const TRACKER: [&str; 3] = ["x_m", "y_m", "z_m"];
 
-/// The columns of a stream.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct StreamColumns {
     /// What the wire is to do with each.

@@ -191,9 +191,6 @@ impl Decide {
     }
 
     /// It is `now_s` of the stream's clock, and no row has come.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(super) fn advance(&mut self, now_s: f64, outputs: &mut Outputs) -> Result<(), LiveError> {
         let Some(answers) = &mut self.answers else { return Ok(()) };
         if let Some(switch) = &mut answers.switch {
@@ -203,9 +200,6 @@ impl Decide {
     }
 
     /// The source is lost, or the session ends.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(super) fn lose(&mut self, ends: bool, outputs: &mut Outputs) -> Result<(), LiveError> {
         let last_s = self.span_s.map_or(f64::NAN, |span| span[1]);
         let ahead_s = self.ahead_s;

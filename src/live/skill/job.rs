@@ -24,7 +24,6 @@ use crate::predictor::DataFile;
 use crate::stages::{Stages, Step, left_out};
 use crate::words::twins;
 
-/// The figures.
 pub(super) const FIGURES: &str = "skill.json";
 /// The report, with places and times.
 const REPORT: &str = "run.json";

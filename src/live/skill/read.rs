@@ -15,7 +15,6 @@ const MOST_TRIALS: usize = 10_000;
 /// The person, if known, and the trial.
 type Whose = (Option<String>, String);
 
-/// One trial.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Trial {
     pub(super) subject: Option<String>,
@@ -23,7 +22,6 @@ pub(super) struct Trial {
     pub(super) fingers: Vec<FingerTrial>,
 }
 
-/// A finger in a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FingerTrial {
     pub(super) name: String,

@@ -108,7 +108,6 @@ pub struct FingerSpread {
 pub(super) struct Measure {
     /// Its column, with the unit.
     pub(super) name: &'static str,
-    /// Its axis.
     pub(super) axis: &'static str,
     pub(super) of: fn(&FingerFigures) -> Option<f64>,
 }

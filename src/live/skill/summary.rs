@@ -17,12 +17,10 @@ fn in_order<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     names
 }
 
-/// All fingers of trials.
 pub(super) fn fingers(trials: &[TrialFigures]) -> Vec<String> {
     in_order(trials.iter().flat_map(|trial| &trial.fingers).map(|one| one.finger.clone()))
 }
 
-/// All people of trials.
 pub(super) fn people(trials: &[TrialFigures]) -> Vec<Option<String>> {
     in_order(trials.iter().map(|trial| trial.subject.clone()))
 }

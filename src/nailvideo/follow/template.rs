@@ -28,7 +28,6 @@ const FEWEST_PIXELS: usize = 60;
 /// Parameters of a motion: displacements in pixels at the nail's half extent: of x by x, y and 1, of y by x, y and 1.
 pub(super) const MOTION: usize = 6;
 
-/// A pixel.
 #[derive(Debug, Clone, Copy)]
 struct Pixel {
     at: [f32; 2],

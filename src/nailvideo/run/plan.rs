@@ -5,9 +5,6 @@ use crate::stages::Step;
 use crate::video::{Info, Video, VideoError};
 
 /// Plans a run; `outputs` may have no place yet.
-///
-/// # Errors
-/// A video that can't be read.
 pub fn plan(inputs: &Inputs, options: &NailVideoOptions, outputs: &Outputs) -> Result<Vec<Step>, VideoError> {
     let video = Video::open(&inputs.video, options.threads)?;
     Ok(steps(Some(video.info()), inputs.outline.is_some(), options, outputs))

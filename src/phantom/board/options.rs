@@ -90,9 +90,6 @@ impl BoardOptions {
     }
 
     /// Can it be drawn?
-    ///
-    /// # Errors
-    /// [`Faults`]: all that is wrong.
     pub fn check(&self) -> Result<(), Faults> {
         let (width, height) = self.size;
         let [least, most] = self.tilt;

@@ -12,9 +12,6 @@ const MOST_ROWS: f64 = 2e7;
 
 impl LogOptions {
     /// Can this log be made?
-    ///
-    /// # Errors
-    /// [`Faults`]: all that is wrong.
     pub fn check(&self) -> Result<(), Faults> {
         let mut faults = Faults::default();
         faults.range("--seconds", self.seconds, 0.0, 1e6, " s");

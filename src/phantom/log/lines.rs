@@ -17,7 +17,6 @@ pub(super) fn photodiodes(options: &LogOptions, suffix: &str) -> Vec<String> {
     options.names().into_iter().map(|name| name + suffix).collect()
 }
 
-/// The columns of a log.
 pub(super) fn columns(options: &LogOptions) -> Vec<Column> {
     let mut columns = vec![match options.stamps {
         Stamps::Seconds | Stamps::Epoch => Column::rounded("time_s", STAMP_DECIMALS),

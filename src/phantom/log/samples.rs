@@ -176,7 +176,6 @@ impl Samples {
         }
     }
 
-    /// What a row reads.
     fn read(&self, row: &mut Row) {
         let mut rng = numbers(self.options.seed, KIND_ROWS, 1 + row.sample as u32);
         let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };

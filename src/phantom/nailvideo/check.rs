@@ -10,9 +10,6 @@ const MOST_LEVEL: f64 = 1.4;
 
 impl NailVideoOptions {
     /// Can this video be made?
-    ///
-    /// # Errors
-    /// [`Faults`]: all that is wrong.
     pub fn check(&self) -> Result<(), Faults> {
         let mut faults = Faults::default();
         let (width, height) = self.size;

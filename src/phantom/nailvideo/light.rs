@@ -37,7 +37,6 @@ pub(super) struct DriftingLight {
 const GLARE: [f64; 2] = [0.05, 0.22];
 const GLARE_REACH: [f64; 2] = [0.5, 0.3];
 
-/// The light of a frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FrameLight {
     /// In the picture's middle: red, green, blue.

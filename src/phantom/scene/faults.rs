@@ -20,9 +20,6 @@ impl Faults {
     }
 
     /// Nothing, where nothing is wrong.
-    ///
-    /// # Errors
-    /// All that is wrong.
     pub fn none(self) -> Result<(), Self> {
         if self.0.is_empty() { Ok(()) } else { Err(self) }
     }

@@ -63,9 +63,6 @@ pub fn refused(path: &Path) -> impl FnOnce(io::Error) -> Unwritten {
 }
 
 /// Writes a record as JSON.
-///
-/// # Errors
-/// The file can't be written.
 pub fn write_record(path: &Path, record: &impl Serialize) -> Result<(), Unwritten> {
     let text = serde_json::to_vec_pretty(record).map_err(|why| refused(path)(why.into()))?;
     std::fs::write(path, text).map_err(refused(path))

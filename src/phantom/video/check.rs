@@ -6,9 +6,6 @@ use crate::phantom::scene::lens::{MOST_TILT_DEG, Mapping};
 
 impl VideoOptions {
     /// Can this video be made?
-    ///
-    /// # Errors
-    /// [`Faults`]: all that is wrong.
     pub fn check(&self) -> Result<(), Faults> {
         let mut faults = Faults::default();
         let size = format!("{}x{}", self.width, self.height);

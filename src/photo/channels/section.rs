@@ -51,7 +51,6 @@ enum Verdict {
     Unknown,
 }
 
-/// Adds the section to the page.
 pub(in crate::photo) fn add_section(page: &mut Page, figures: &ChannelFigures) {
     page.heading("Why the green channel? (Section 4.2.2)");
     page.paragraph(CLAIM);

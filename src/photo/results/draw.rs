@@ -79,9 +79,6 @@ pub(crate) struct Scratch {
 impl Scratch {
     /// A normalized picture as a PNG, as deep as its source; with an alpha channel, 0 where the photograph does not
     /// show the place, only if there is such a place.
-    ///
-    /// # Errors
-    /// The encoder's.
     pub(crate) fn png_of(&mut self, picture: &Normalized, depth: Depth) -> Result<&[u8], image::ImageError> {
         let eight = |level: u16| ((u32::from(level) * 255 + 32767) / 65535) as u8;
         let Self { samples, png } = self;

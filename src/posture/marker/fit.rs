@@ -6,7 +6,6 @@ use super::sight::Centre;
 /// What a frame shows of a marker.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fit {
-    /// Its centre.
     pub(crate) centre: Centre,
     /// The covariance as it would be if the noise were independent from sample to sample.
     pub(crate) white_px2: [f64; 3],

@@ -43,7 +43,6 @@ pub(in crate::posture) struct Row<'a> {
     pub(in crate::posture) frame: Option<&'a Frame<'a>>,
     /// Each marker of the layout.
     pub(in crate::posture) sights: &'a [Sight],
-    /// The joints.
     pub(in crate::posture) joints: AngleRow,
 }
 

@@ -42,7 +42,6 @@ const LEAST_ALIKE: f64 = 0.6;
 /// Where a marker was first seen.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Start {
-    /// The frame.
     pub(crate) frame: u64,
     /// Its place there, to about a pixel.
     pub(crate) at_px: [f64; 2],

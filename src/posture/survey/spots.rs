@@ -68,7 +68,6 @@ impl Spot {
     }
 }
 
-/// All spots.
 #[derive(Debug, Default)]
 pub(super) struct Spots {
     pub(super) all: Vec<Spot>,

@@ -37,7 +37,6 @@ fn sides(rim: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     ends.into_iter().flatten().map(|end| vec![[0.0, 0.0], *end]).collect()
 }
 
-/// Cone and trajectory.
 pub(super) fn cone_chart(options: &TrajectoryOptions, motion: &ForceMotion) -> Chart {
     let size = [2.0 * options.mu * options.fz_max_n, options.fz_max_n];
     let mut path: Vec<[f64; 2]> = moments(options).map(|time_s| seen(motion.at(time_s))).collect();

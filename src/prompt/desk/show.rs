@@ -15,7 +15,6 @@ const BACK_S: f64 = 0.25;
 const AHEAD_S: f64 = 1.25;
 const EVERY_S: f64 = 0.02;
 
-/// The state.
 #[derive(Serialize)]
 struct State<'a> {
     now_s: f64,

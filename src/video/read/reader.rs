@@ -72,7 +72,6 @@ fn may_be_reordered(codec: Id) -> i64 {
 const MOST_HELD: usize = 32;
 
 impl Reader {
-    /// Opens `path`.
     pub(in crate::video) fn open(path: &std::path::Path, threads: usize, care: Care) -> Result<Self, VideoError> {
         let source = Source::open(path, threads, care)?;
         let mut order = Order::default();

@@ -176,9 +176,6 @@ impl Encoder {
     }
 
     /// Ends the file.
-    ///
-    /// # Errors
-    /// When it can't be written.
     pub fn finish(mut self) -> Result<(), VideoError> {
         self.encoder.send_eof().map_err(|error| write_error(&self.path, &error))?;
         self.write_packets()?;

@@ -111,7 +111,6 @@ fn rises<'a>(force: &'a Force, contact: &Contact) -> impl Iterator<Item = f64> +
         .filter(|rise| rise.is_finite())
 }
 
-/// The smoothness of one contact.
 fn smoothness(force: &Force, contact: &Contact) -> Option<f64> {
     let rows = contact.rows.clone();
     let within = Force {

@@ -86,7 +86,6 @@ impl Default for Gaps {
 }
 
 impl Gaps {
-    /// A row with its time.
     pub(in crate::source) fn row(&mut self, time_s: f64, begins: bool, period_s: Option<f64>) {
         if time_s.is_nan() {
             return;

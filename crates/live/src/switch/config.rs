@@ -106,9 +106,6 @@ impl SwitchConfig {
     }
 
     /// Can it work?
-    ///
-    /// # Errors
-    /// [`ConfigFault`]: all that is wrong.
     pub fn check(&self) -> Result<(), ConfigFault> {
         let mut faults = Vec::new();
         let Self { on_n, off_n, .. } = *self;

@@ -33,9 +33,6 @@ impl StudyOptions {
     pub const MOST: u32 = 9_999;
 
     /// Checks whether this study can be made; its videos and logs are checked by [`Study::new`](super::Study::new).
-    ///
-    /// # Errors
-    /// [`Faults`]: all that is wrong.
     pub(super) fn check(&self) -> Result<(), Faults> {
         let mut faults = Faults::default();
         let Self { subjects, sensors, presses, .. } = *self;

@@ -24,7 +24,6 @@ pub(crate) struct Curve {
     pub(crate) at: Vec<f64>,
     /// As the driving signal rises; none where no leg is known.
     pub(crate) rising: Vec<Option<Point>>,
-    /// As it falls.
     pub(crate) falling: Vec<Option<Point>>,
 }
 

@@ -91,7 +91,6 @@ pub(crate) struct ResponsesFigures {
     pub(crate) drive: String,
     /// Whole cycles, over all recordings.
     pub(crate) cycles: usize,
-    /// Its range.
     pub(crate) range: [f64; 2],
     /// Numbers by name.
     pub(crate) numbers: Numbers,

@@ -51,7 +51,6 @@ pub struct Outcome {
     pub loss: f64,
 }
 
-/// Sample `number` of a kind.
 fn draw(faces: &Faces, kind: Kind, number: u64) -> Sample {
     samples(faces, kind, 1, &mut ChaCha8Rng::seed_from_u64(number)).swap_remove(0)
 }

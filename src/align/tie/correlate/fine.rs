@@ -45,7 +45,6 @@ pub(super) struct Spot<'a> {
     pub(super) judge: Judge,
 }
 
-/// A peak.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Peak {
     /// Which of the spots it was found from.

@@ -31,9 +31,6 @@ impl EventsFile {
     }
 
     /// Writes an event, whose line `event` makes.
-    ///
-    /// # Errors
-    /// It failed.
     pub(crate) fn write(&mut self, event: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> Result<(), LiveError> {
         self.line.clear();
         let written = event(&mut self.line).and_then(|()| self.to.write_all(&self.line));

@@ -45,7 +45,6 @@ pub(super) struct Outputs {
     line: String,
 }
 
-/// A row of answers.
 pub(super) struct AnswerRow<'a> {
     /// `time_s` and what is predicted, as text without an end.
     pub(super) text: &'a str,

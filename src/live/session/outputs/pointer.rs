@@ -87,9 +87,6 @@ impl PointerOutput {
     }
 
     /// What was answered to a row.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(crate) fn sample(&mut self, t_s: f64, values: &[f64], answer: Answer) -> Result<(), LiveError> {
         let [fx, fy, fz] = self.forces.map(|k| values[k]);
         // Under a gate the angle of a touching finger is no prediction.
@@ -100,17 +97,11 @@ impl PointerOutput {
     }
 
     /// Time has passed without one.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(crate) fn advance(&mut self, now_s: f64) -> Result<(), LiveError> {
         self.with(|pointer, out| pointer.advance(now_s, out))
     }
 
     /// The source is lost, or the session ends.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(crate) fn lose(&mut self, t_s: f64, reason: Reason) -> Result<(), LiveError> {
         self.with(|pointer, out| pointer.lose(t_s, reason, out))
     }

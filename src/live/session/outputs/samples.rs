@@ -156,9 +156,6 @@ impl Samples {
 
     /// A row, recorded at `time_s`; at `common_s` of the clock that both devices are on. Further cells are each behind
     /// a comma.
-    ///
-    /// # Errors
-    /// A recording that can't be written.
     pub(crate) fn row(&mut self, row: &Row<'_>, time_s: f64, common_s: f64, cells: &str) -> Result<(), LiveError> {
         self.line.clear();
         push_number(&mut self.line, time_s);
@@ -186,9 +183,6 @@ impl Samples {
     }
 
     /// A sample of the second device, at `common_s`.
-    ///
-    /// # Errors
-    /// A recording that can't be written.
     pub(crate) fn force(&mut self, common_s: f64, values: &[f64], begins: bool) -> Result<(), LiveError> {
         let Some(forces) = &mut self.forces else { return Ok(()) };
         if let Some(companion) = &mut forces.companion {
@@ -198,9 +192,6 @@ impl Samples {
     }
 
     /// Records what waits and is known, or has waited long enough at `now_s` of the common clock.
-    ///
-    /// # Errors
-    /// A recording that can't be written.
     pub(crate) fn settle(&mut self, now_s: f64) -> Result<(), LiveError> {
         let Some(forces) = &mut self.forces else { return Ok(()) };
         while let Some(Waiting { common_s, line, cells }) = forces.waiting.front_mut() {
@@ -237,9 +228,6 @@ impl Samples {
     }
 
     /// The second device gives nothing more.
-    ///
-    /// # Errors
-    /// A recording that can't be written.
     pub(crate) fn end_forces(&mut self) -> Result<(), LiveError> {
         if let Some(forces) = &mut self.forces {
             // A device that never named columns gives none.

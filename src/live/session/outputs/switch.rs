@@ -77,9 +77,6 @@ impl SwitchOutput {
     }
 
     /// An answer to a row; the clock of `events` is ahead of the stream's by `ahead_s`.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(crate) fn sample(
         &mut self,
         row: &Row<'_>,
@@ -95,9 +92,6 @@ impl SwitchOutput {
     }
 
     /// Time has passed without a row.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(crate) fn advance(
         &mut self,
         now_s: f64,
@@ -109,9 +103,6 @@ impl SwitchOutput {
     }
 
     /// The source is lost, or the session ends.
-    ///
-    /// # Errors
-    /// Events that can't be written.
     pub(crate) fn lose(
         &mut self,
         t_s: f64,

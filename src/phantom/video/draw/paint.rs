@@ -118,7 +118,6 @@ impl<'a> Exposure<'a> {
         }
     }
 
-    /// Draws row `y`.
     pub(in crate::phantom::video) fn draw(&self, y: usize, row: &mut Row) {
         self.desk(y, row);
         if let Some(other) = &self.scene.other_hand {

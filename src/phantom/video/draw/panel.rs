@@ -48,7 +48,6 @@ impl Screen {
         Some(Self { roi, frame_px: (scene.options.width / 100).max(2), back, front, lit })
     }
 
-    /// Draws row `y` of it.
     pub(in crate::phantom::video) fn draw(&self, y: usize, row: &mut Row) {
         let [left, top, width, height] = self.roi;
         if y + self.frame_px < top || y >= top + height + self.frame_px {

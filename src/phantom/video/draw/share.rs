@@ -18,7 +18,6 @@ pub(in crate::phantom::video) struct Shares {
     pub(in crate::phantom::video) seen_px: Option<[f64; 2]>,
 }
 
-/// The shares of marker `marker` at one moment.
 pub(in crate::phantom::video) fn shares(scene: &Scene, moment: &Moment, marker: usize) -> Shares {
     let centre = moment.markers_px[marker];
     let blot = scene.blots.get(marker);

@@ -60,7 +60,6 @@ pub(super) fn deviance(series: &[Observation], parameters: &Parameters, half_tur
     forwards(series, parameters, half_turn, |_, _| {})
 }
 
-/// Smooths a series.
 pub(super) fn smooth(series: &[Observation], parameters: &Parameters, half_turn: f64) -> Vec<Row> {
     let mut passed: Vec<Passed> = Vec::with_capacity(series.len());
     forwards(series, parameters, half_turn, |at, row| {

@@ -29,7 +29,6 @@ const ARM: f64 = 0.35;
 
 /// A marker to draw.
 pub(crate) struct Mark<'a> {
-    /// Its name.
     pub(crate) name: &'a str,
     /// What the frame shows of it, in coordinates of the stored picture.
     pub(crate) sight: Sight,

@@ -9,7 +9,6 @@ use crate::posture::layout::Layout;
 /// A marker in the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Link {
-    /// The marker.
     pub(crate) marker: usize,
     /// The place in the chain of the marker before it on the way from proximal to distal.
     pub(crate) before: Option<usize>,

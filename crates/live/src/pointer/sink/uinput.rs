@@ -45,9 +45,6 @@ impl Uinput {
     }
 
     /// Hands an event to the kernel; one that is no move, button or scrolling is passed over.
-    ///
-    /// # Errors
-    /// The kernel's.
     pub fn write(&mut self, event: &Event) -> Result<(), UinputFault> {
         let (events, count) = kernel_events(event);
         if count > 0 {
