@@ -53,6 +53,15 @@ pub(crate) fn place(text: &str, at: usize) -> (usize, usize) {
     (line, 1 + String::from_utf8_lossy(&before[start..]).chars().count())
 }
 
+/// The text of a file; the fault is where it is no UTF-8.
+pub(crate) fn text(bytes: Vec<u8>) -> Result<String, Fault> {
+    String::from_utf8(bytes).map_err(|why| {
+        let sound = &why.as_bytes()[..why.utf8_error().valid_up_to()];
+        let (line, column) = place(&String::from_utf8_lossy(sound), sound.len());
+        Fault { line, column, what: "not UTF-8 text; save the file as UTF-8".to_owned() }
+    })
+}
+
 /// Faults that are named of one file; who corrects so many looks again (assumed).
 const MOST: usize = 100;
 

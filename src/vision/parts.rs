@@ -91,8 +91,6 @@ fn try_steps_out(set: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, Vis
 
 #[cfg(test)]
 mod tests {
-    use std::time::Instant;
-
     use proptest::prelude::*;
 
     use super::*;
@@ -177,22 +175,5 @@ mod tests {
         assert!(parts(&[0; 6], [3, 2], Neighbours::Eight).all.is_empty());
         assert_eq!(steps_out(&[1; 6], [3, 2]), [255; 6]);
         assert_eq!(steps_out(&[0; 6], [3, 2]), [0; 6]);
-    }
-
-    /// Prints how long OpenCV and a flood take for a picture of ink.
-    #[test]
-    fn parts_cost_less_than_a_flood() {
-        let size = [160, 60];
-        let set: Vec<u8> = (0..160 * 60).map(|k| u8::from(k % 160 % 16 < 9 && k / 160 % 20 > 6)).collect();
-        for ways in [Neighbours::Four, Neighbours::Eight] {
-            assert_eq!(parts(&set, size, ways), flooded(&set, size, ways));
-            let time = |work: &dyn Fn() -> Parts| {
-                let start = Instant::now();
-                (0..200).for_each(|_| drop(std::hint::black_box(work())));
-                start.elapsed() / 200
-            };
-            let (mine, theirs) = (time(&|| flooded(&set, size, ways)), time(&|| parts(&set, size, ways)));
-            println!("160 x 60 samples, {ways:?}: a flood {mine:?}, OpenCV {theirs:?}");
-        }
     }
 }

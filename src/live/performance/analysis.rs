@@ -29,7 +29,6 @@ pub(super) fn figures(data: &str, trials: &Trials, course: Course, baseline: usi
     let others = (0..methods.len()).filter(|&other| other != baseline);
     PerformanceFigures {
         data: data.to_owned(),
-        folder: std::path::PathBuf::new(),
         shortest_s: course.shortest_s(),
         course,
         rows: trials.rows.len(),

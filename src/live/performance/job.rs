@@ -58,7 +58,6 @@ pub fn run(
     let baseline = baseline(options, &trials, name)?;
     watch.go_on()?;
     let figures = stages.time("figures of merit", || analysis::figures(name, &trials, course, baseline));
-    let figures = PerformanceFigures { folder: folder.clone(), ..figures };
     places.write(&folder.join(FIGURES), &json_text(&figures))?;
     stages.time("tables", || {
         write_means(&figures, folder, &mut places)?;

@@ -1,6 +1,5 @@
 //! What trials say: means, curves, comparisons.
 
-use std::path::PathBuf;
 
 use lunula_live::performance::{Course, Curve, Law, Measured, Paired};
 use lunula_live::spread::Spread;
@@ -16,9 +15,6 @@ pub type PerformanceReport = Report<PerformanceFigures>;
 pub struct PerformanceFigures {
     /// The table of trials.
     pub data: String,
-    /// The folder of the results.
-    #[serde(skip)]
-    pub folder: PathBuf,
     /// What was driven.
     pub course: Course,
     /// The time of driving alone, seconds: path / speed.

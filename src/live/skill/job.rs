@@ -111,7 +111,6 @@ pub fn run(
     let people: Vec<_> = summary::people(&trials).iter().map(|subject| summary::person(subject, &trials)).collect();
     warnings.extend(twins("subjects", trials.iter().filter_map(|trial| trial.subject.as_deref())));
     let figures = SkillFigures {
-        folder: folder.clone(),
         reference: reference.map(|reference| reference.name),
         over_people: summary::over_people(&people),
         people,

@@ -1,7 +1,6 @@
 //! What fingers did: by trial, by person, over people.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use lunula_live::skill::Figures;
 use lunula_live::spread::Spread;
@@ -15,9 +14,6 @@ pub type SkillReport = Report<SkillFigures>;
 /// The figures of all recordings.
 #[derive(Debug, Clone, Serialize)]
 pub struct SkillFigures {
-    /// The folder of the results.
-    #[serde(skip)]
-    pub folder: PathBuf,
     /// What was compared with; none: nothing was.
     pub reference: Option<String>,
     /// Each trial, in the recordings' order.

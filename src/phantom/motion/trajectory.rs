@@ -229,13 +229,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equation_27_bends_from_minus_5_to_75_degrees() {
-        let bending = Trajectory::Eq27 { hz: 0.1 };
-        assert!((bending.angles_rad(0.0)[1].to_degrees() + 5.0).abs() < 1e-9);
-        assert!((bending.angles_rad(5.0)[1].to_degrees() - 75.0).abs() < 1e-9);
-    }
-
-    #[test]
     fn free_bending_extends_and_flexes_fully_and_holds_the_knuckle() {
         let free = Trajectory::Free { hz: 0.1 };
         let at = |t_s: f64| free.angles_rad(t_s).map(f64::to_degrees);

@@ -37,7 +37,7 @@ use crate::input;
 use crate::job::{Kind, OptionFault, Part, Prepared};
 use crate::pipeline::items::catalogue::Catalogue;
 use crate::pipeline::parts::shard::PipelineMark;
-use crate::toml_file::{Fault, place};
+use crate::toml_file::{self, Fault, place};
 
 /// Why a pipeline can't be planned.
 #[derive(Debug, thiserror::Error)]
@@ -224,10 +224,5 @@ fn text_of(path: &Path) -> Result<String, PipelineError> {
         let what = format!("it has {} bytes; a pipeline file has {LARGEST} at most", bytes.len());
         return Err(unreadable(std::io::Error::new(std::io::ErrorKind::FileTooLarge, what)));
     }
-    String::from_utf8(bytes).map_err(|why| {
-        let sound = String::from_utf8_lossy(&why.as_bytes()[..why.utf8_error().valid_up_to()]).into_owned();
-        let (line, column) = place(&sound, sound.len());
-        let what = "not UTF-8 text; save the file as UTF-8".to_owned();
-        PipelineError::Faults { path: path.to_owned(), faults: vec![Fault { line, column, what }] }
-    })
+    toml_file::text(bytes).map_err(|fault| PipelineError::Faults { path: path.to_owned(), faults: vec![fault] })
 }

@@ -9,5 +9,4 @@ mod limits;
 mod parts;
 pub(super) mod planned;
 mod random;
-mod speed;
 mod toys;

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use crate::clock::Clock;
 use crate::flexion::Flexion;
-use crate::toml_file::{Fault, place};
+use crate::toml_file::{self, Fault};
 
 /// A sticker or a dot of paint.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -164,16 +164,9 @@ impl Layout {
     /// Where it can't be read, or with all its faults.
     pub fn read(path: &Path) -> Result<Self, LayoutError> {
         let unreadable = |why| LayoutError::Unreadable { path: path.to_owned(), why };
-        let bytes = crate::input::read(path).map_err(unreadable)?;
-        match String::from_utf8(bytes) {
-            Ok(text) => Self::parse(&text, path),
-            Err(why) => {
-                let sound = &why.as_bytes()[..why.utf8_error().valid_up_to()];
-                let (line, column) = place(&String::from_utf8_lossy(sound), sound.len());
-                let what = "not UTF-8 text; save the file as UTF-8".to_owned();
-                Err(LayoutError::Faults { path: path.to_owned(), faults: vec![Fault { line, column, what }] })
-            }
-        }
+        let text = toml_file::text(crate::input::read(path).map_err(unreadable)?);
+        let faulty = |fault| LayoutError::Faults { path: path.to_owned(), faults: vec![fault] };
+        Self::parse(&text.map_err(faulty)?, path)
     }
 
     /// Checks the text of a marker file; `path` is for the messages.

@@ -150,10 +150,6 @@ pub enum DataError {
     Log(#[from] LogError),
     #[error("{}: {what}", path.display())]
     Columns { path: PathBuf, what: String },
-    #[error("{place}: {what}")]
-    Cell { place: String, what: String },
-    #[error("{name}: cannot be read ({why})")]
-    Stream { name: String, why: std::io::Error },
     #[error("no row can be used: {0}")]
     NoRows(String),
     #[error("{0}")]

@@ -270,23 +270,3 @@ fn too_many_equilibria_are_an_error_and_soon() {
     let fifty = Model::new(&Parameters::along_nail(50).unwrap(), Collapse::Error);
     assert_eq!(equilibria(&fifty, &load(5000.0, 5000.0)).unwrap().len(), 1);
 }
-
-/// How long an equilibrium takes: `cargo test --release -p lunula-hemodynamics speed -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn speed() {
-    for (name, model) in [
-        ("thesis", thesis(Collapse::Error)),
-        ("thesis, contact", thesis(Collapse::Contact)),
-        ("k_C / 2", Model::new(&soft(), Collapse::Error)),
-    ] {
-        let loads: Vec<Inputs> = (0..=108).map(|k| load(0.0, 100.0 * k as f64)).collect();
-        let once = || {
-            let begin = std::time::Instant::now();
-            let count: usize = loads.iter().map(|inputs| equilibria(&model, inputs).expect("counted").len()).sum();
-            (begin.elapsed() / loads.len() as u32, count)
-        };
-        let best = (0..50).map(|_| once()).min().expect("some runs");
-        println!("{name}: {:?} a load over {} loads, {} equilibria", best.0, loads.len(), best.1);
-    }
-}

@@ -3,7 +3,7 @@
 //! In: rows with their time, and lags in seconds. Out: the same rows with the inputs at t - lag beside those at t,
 //! named `P1@-0.1s`, for the linear, quadratic or network model to use (blood takes 0.1 to 0.3 s to come and go, 4.3).
 //! Between two rows of one recording voltages are interpolated linearly, but only where the two are no farther apart
-//! than [`Lags::longest_gap_s`]: twice the median step of the rows that a model was trained on. A row without that much
+//! than `longest_gap_s`: twice the median step of the rows that a model was trained on. A row without that much
 //! history is left out and counted.
 //!
 //! A set is expanded by the very code that expands a stream, so both give the same bits. Conventions: a moment within a
@@ -25,6 +25,7 @@ use crate::{Dataset, DatasetFault, Recording};
 #[serde(try_from = "Raw")]
 pub struct Lags {
     lags_s: Vec<f64>,
+    /// The longest gap between two rows that is interpolated over.
     longest_gap_s: f64,
 }
 
@@ -112,12 +113,6 @@ impl Lags {
     #[must_use]
     pub fn lags_s(&self) -> &[f64] {
         &self.lags_s
-    }
-
-    /// The longest gap between two rows that is interpolated over, seconds.
-    #[must_use]
-    pub fn longest_gap_s(&self) -> f64 {
-        self.longest_gap_s
     }
 
     /// The names of all inputs: those given, then those of each lag.

@@ -45,7 +45,7 @@ fn a_ramp_is_read_exactly_at_its_lags() {
     let time: Vec<f64> = (0..20).map(|k| f64::from(k) * 0.04).collect();
     let data = set(&[&time, &time], |t, column| 3.0 * t + column as f64);
     let lags = Lags::of(vec![0.1, 0.04], &data).unwrap();
-    assert!((lags.longest_gap_s() - 0.08).abs() <= 1e-12);
+    assert!((lags.longest_gap_s - 0.08).abs() <= 1e-12);
     let wide = lags.expand(&data).unwrap();
     // 0.1 s are 2.5 steps: the first three rows of each recording have no history.
     assert_eq!((wide.dropped, wide.data.rows(), wide.kept[..2].to_vec()), (6, 34, vec![3, 4]));
@@ -62,7 +62,7 @@ fn a_ramp_is_read_exactly_at_its_lags() {
 fn nothing_is_read_across_a_gap_or_out_of_another_recording() {
     let data = set(&[&[0.0, 1.0, 2.0, 3.0, 6.0, 7.0, 8.0], &[0.0, 1.0]], |t, _| t);
     let lags = Lags::of(vec![1.5], &data).unwrap();
-    assert_eq!(lags.longest_gap_s(), 2.0);
+    assert_eq!(lags.longest_gap_s, 2.0);
     let wide = lags.expand(&data).unwrap();
     // At 6 s and 7 s the moment lies in the gap; the second recording is too short.
     assert_eq!(wide.kept, [2, 3, 6]);
