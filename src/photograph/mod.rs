@@ -46,7 +46,6 @@ pub enum ReadFault {
          allow more with --max-megapixels", (f64::from(*width) * f64::from(*height) / 1e6)
     )]
     TooLarge { width: u32, height: u32, megapixels: u32 },
-    /// More bytes than so many pixels take.
     #[error(
         "is longer than a picture of {megapixels} megapixels can be; make it smaller, or allow more with \
          --max-megapixels"
@@ -61,11 +60,7 @@ pub enum ReadFault {
     #[error("has 8 bits a channel, whose white is 255; --white is for 16 bits: run such photographs apart, without it")]
     WhiteOfEight,
     #[error("has a sample of {largest}, above --white {white}; give the sensor's largest value (4095 of 12 bits)")]
-    AboveWhite {
-        /// The largest sample.
-        largest: u16,
-        white: u16,
-    },
+    AboveWhite { largest: u16, white: u16 },
     /// sRGB's curve is to be undone where it was not used.
     #[error(
         "has the colour profile `{0}`, whose curve is not sRGB's, which --linear undoes; export it as sRGB, or leave \

@@ -9,29 +9,17 @@ pub enum ClockFault {
          needed: check the clock's place and format in the marker file, or film it larger and unhidden"
     )]
     TooFew { read: usize, agree: usize, frames: usize, fewest: usize },
-    /// It shows the same while the video goes on.
     #[error(
         "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video to \
          where the clock runs, use a clock that is not paused, or if it is not, let `roi` under [clock] hold all of \
          its digits"
     )]
-    Stops {
-        from_s: f64,
-        to_s: f64,
-        /// What it shows, seconds.
-        shown_s: f64,
-    },
-    /// It runs well before and after, but not on one line.
+    Stops { from_s: f64, to_s: f64, shown_s: f64 },
     #[error(
         "the clock jumps by {by_s:+.3} s at {at_s:.3} s of the video; cut the video there and align the parts one by \
          one"
     )]
-    Jumps {
-        at_s: f64,
-        /// By how much, seconds.
-        by_s: f64,
-    },
-    /// It runs well but too fast or too slow.
+    Jumps { at_s: f64, by_s: f64 },
     #[error(
         "the clock runs {rate:.4} times as fast as the video; the file's frame times must be those of the recording: \
          no slow motion, time lapse or countdown, no other frame rate than the camera's"

@@ -1,6 +1,5 @@
 //! What trials say: means, curves, comparisons.
 
-
 use lunula_live::performance::{Course, Curve, Law, Measured, Paired};
 use lunula_live::spread::Spread;
 use serde::Serialize;

@@ -58,7 +58,6 @@ pub enum AnnotationFault {
         /// Width and height of the upright photograph.
         photo: [u32; 2],
     },
-    /// Upright and stored picture have the same size.
     #[error(
         "{0}: the photograph's EXIF orientation turns it without changing its size, so it is not known whether this \
          was drawn on the upright or on the stored picture; say --annotations upright or --annotations stored"
@@ -100,7 +99,6 @@ pub enum ShapeFault {
         number: usize,
         kind: String,
     },
-    /// A point where no picture of this size can have one.
     #[error(
         "shape {number}: its point ({x:e}, {y:e}) lies far outside of the photograph ({width} x {height} px); draw it \
          again"
@@ -115,7 +113,6 @@ pub enum ShapeFault {
         width: u32,
         height: u32,
     },
-    /// An axis that is no nail's, most likely this one's.
     #[error(
         "shape {number} is labelled {AXIS} and belongs to no nail; draw it as a line of two points whose middle lies \
          in the nail, or give both the same group_id"

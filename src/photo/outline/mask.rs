@@ -89,13 +89,11 @@ impl serde::Serialize for MaskValues {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[allow(missing_docs, reason = "the messages say it")]
 pub enum MaskFault {
-    /// Neither full-scale nor instance numbers.
     #[error(
         "the mask's largest value is {largest} of {full}: neither white nails (above half) nor nail numbers (1 to 32); \
          make the nails white"
     )]
     Range { largest: f32, full: f32 },
-    /// A picture in grey.
     #[error(
         "a grey picture rather than a mask: for every 100 white pixels it has {:.0} that are neither white nor black, \
          edges \
@@ -107,7 +105,6 @@ pub enum MaskFault {
     },
     #[error("no pixel of the mask has a value of {values}; its values are {least} to {largest}")]
     NoSuchValue { values: MaskValues, least: f32, largest: f32 },
-    /// Small values all over the place.
     #[error("the mask's values 1 to 32 form {regions} regions: a noisy black picture rather than nail numbers")]
     Noise { regions: usize },
 }
@@ -132,20 +129,18 @@ impl std::fmt::Display for DroppedRegion {
 
 /// A region that is too large to be a nail.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum TooLarge {
-    /// Most of the picture.
     #[error(
         "the region covers {:.0} % of the mask, more than any nail ({:.0} %); is the mask inverted, or a finger's?",
         100.0 * .0, 100.0 * LARGEST_SHARE
     )]
     Picture(f64),
-    /// Far longer than the others.
     #[error(
         "the region is {0:.1} times as long as the mask's others in median, and no nail is {LONGEST:.0} times as long \
          as its neighbours; is it a finger's?"
     )]
     Others(f64),
-    /// Of two regions one is far longer than the other.
     #[error(
         "of the mask's two regions one is {0:.1} times as long as the other, and no nail is {LONGEST:.0} times as long \
          as its neighbours; one of them is none, and it isn't known which."

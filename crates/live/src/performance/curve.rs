@@ -80,17 +80,14 @@ pub struct Curve {
 /// Why there is no curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum NoCurve {
-    /// Too few trials to judge a curve of three parameters.
     #[error("there are fewer than {FEWEST_TRIALS} different trials")]
     TooFewTrials,
-    /// All means are alike.
     #[error("the times do not change from trial to trial")]
     NoChange,
-    /// The best pace is slower than can be seen.
     #[error("the times have not begun to level off: the asymptote is not determined")]
     NotLevelling,
-    /// The best pace is faster than can be seen.
     #[error("all of the change is between two trials: the pace is not determined")]
     AtOnce,
 }

@@ -4,7 +4,6 @@
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say it")]
 pub enum WireFault {
-    /// The columns have names that nobody has a use for.
     #[error("line {line} names the columns {names}: {why}")]
     Naming {
         /// The line of names; 0 where they were given beforehand.
@@ -12,25 +11,18 @@ pub enum WireFault {
         names: String,
         why: String,
     },
-    /// A stream names other columns, or its columns in another order, than its rows before.
     #[error(
         "line {line} names the columns {names}, and the rows before it are {before}: the device started again with \
          other columns, and its rows are not read from there on; make a recording of its own for them"
     )]
     OtherNames { line: u64, names: String, before: String },
-    /// A stream names its columns in another order than the names that were given.
     #[error(
         "line {line} names the columns {names}, and --names gives them in another order, {given}; leave --names out, \
          or give them in the order of the stream (--columns P1=P2,P2=P1 exchanges two)"
     )]
     OtherOrder { line: u64, names: String, given: String },
     #[error("line {line} has {cells} cells, and --names gives {names}; give as many names as cells")]
-    OtherCells {
-        /// Which line, the last.
-        line: u64,
-        cells: usize,
-        names: usize,
-    },
+    OtherCells { line: u64, cells: usize, names: usize },
     #[error(
         "line {line} holds numbers (`{text}`) and no line of names came before it: begin with a line such as \
          time_us,n,led,P1,P2 (reset the device if it writes one when it starts), or give the names with --names"

@@ -99,28 +99,18 @@ pub enum AxisDoubt {
     #[error("the nail's outline lies outside of the photograph")]
     Outside,
     #[error("the nail is {length_px:.1} px long, too small to see the finger's direction")]
-    TooSmall {
-        /// Long axis of the outline, pixels.
-        length_px: f64,
-    },
-    /// The outline is dented as where two nails touch.
+    TooSmall { length_px: f64 },
     #[error(
         "the outline is dented (it fills {share:.2} of its convex hull) as where two nails touch; separate them first"
     )]
-    Dented {
-        /// Area over the area of its convex hull.
-        share: f64,
-    },
-    /// Nothing stands out around the nail.
+    Dented { share: f64 },
     #[error("nothing around the nail shows where the finger lies")]
     Featureless,
-    /// Several directions fit.
     #[error("the finger's direction is not clear from the picture (confidence {confidence:.2})")]
     Unclear {
         /// Probability of the best direction, 0 to 1.
         confidence: f64,
     },
-    /// The nail's surroundings and the other fingers disagree.
     #[error("the picture around the nail and the other fingers point to different sides")]
     AgainstOthers,
 }
