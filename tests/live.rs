@@ -158,6 +158,18 @@ fn a_recording_makes_its_folder_and_where_none_can_be_nothing_begins() {
 }
 
 #[test]
+fn what_lies_behind_the_seconds_is_not_said_of_them() {
+    let dir = desk();
+    let rows: String =
+        (0..800).filter(|k| !(400..600).contains(k)).map(|k| format!("{}.{:02},1\n", k / 100, k % 100)).collect();
+    dir.write("gap.csv", format!("time_s,P1\n{rows}garbage\n"));
+    let record = |more: &[&str]| dir.lunula(&[&["record", "--source", "gap.csv", "--out", "o.csv"], more].concat());
+    record(&["--seconds", "3"]).expect(0).never_says("never came").never_says("failed");
+    assert_eq!(dir.parsed("o.stream.json")["sources"][0]["rows"], 301);
+    record(&["--replace"]).expect(1).says("200 rows never came or came late");
+}
+
+#[test]
 fn killed_at_any_moment_a_recording_lacks_a_second_at_most() {
     let dir = desk();
     let mut running = start(&dir, &["record", "--source", "-", "--out", "r.csv"]);
@@ -405,6 +417,7 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     let evaluate = ["switch", "evaluate", "s.toml", "c.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
     dir.lunula(&[&evaluate[..], &["--out", "ev"]].concat()).expect(0).prints("0 of 60 presses missed");
     let judged = dir.parsed("ev/switch.json");
+    assert_eq!(dir.parsed("ev/run.json")["job"], "switch evaluate");
     assert_eq!(
         (&judged["presses"], &judged["missed"], &judged["false_per_hour"]),
         (&60.into(), &0.into(), &0.0.into())

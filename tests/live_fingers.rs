@@ -189,6 +189,51 @@ fn devices_with_clocks_of_their_own_are_brought_together() {
     );
 }
 
+/// A device that sends the time since `start`, without a clock of its own, in bursts.
+fn bursts(start: Instant, name: &'static str, rows: u32, every: Duration, count: u32) -> (String, JoinHandle<()>) {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let source = format!("tcp:{}?once", listener.local_addr().expect("an address"));
+    let sends = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().expect("the program comes");
+        stream.set_nodelay(true).expect("a socket");
+        stream.write_all(format!("{name}\n").as_bytes()).expect("the program reads");
+        let mut from_s = start.elapsed().as_secs_f64();
+        for _ in 0..count {
+            std::thread::sleep(every);
+            let to_s = start.elapsed().as_secs_f64();
+            let made = |k: u32| from_s + (to_s - from_s) * f64::from(k + 1) / f64::from(rows);
+            let text: String = (0..rows).map(|k| format!("{:.6}\n", made(k))).collect();
+            if stream.write_all(text.as_bytes()).is_err() {
+                return;
+            }
+            from_s = to_s;
+        }
+    });
+    (source, sends)
+}
+
+#[test]
+fn forces_that_come_in_bursts_are_not_a_burst_late() {
+    for (rows, every_ms, is_said) in [(20, 100, true), (1, 5, false)] {
+        let dir = desk();
+        let start = Instant::now();
+        let (sensor, one) = device(start, "P1", 5.0, Duration::from_millis(5), 2.0);
+        let (force, other) = bursts(start, "Fz_N", rows, Duration::from_millis(every_ms), 2400 / every_ms as u32);
+        let said = dir.lunula(&["record", "--source", &sensor, "--force", &force, "--out", "r.csv"]).expect(0);
+        one.join().and_then(|()| other.join()).expect("the devices");
+        let said = if is_said { said.says("come in bursts") } else { said.never_says("come in bursts") };
+        let text = dir.text("r.csv");
+        let mut off_s: Vec<f64> = cells(&text)
+            .iter()
+            .filter(|row| !row[2].is_empty())
+            .map(|row| (row[1].parse::<f64>().unwrap() - row[2].parse::<f64>().unwrap()).abs())
+            .collect();
+        off_s.sort_by(f64::total_cmp);
+        // Of bursts it was half of one, 50 ms and more.
+        assert!(off_s.len() > 100 && off_s[off_s.len() / 2] <= 0.01, "{rows}: {off_s:?} {}", said.stderr);
+    }
+}
+
 #[test]
 fn fingers_of_two_devices_are_on_one_clock_and_one_that_ends_stops_nobody() {
     let dir = desk();

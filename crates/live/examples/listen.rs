@@ -4,6 +4,7 @@
 
 use std::error::Error;
 use std::io::Write;
+use std::ops::ControlFlow;
 
 use lunula_live::source::{Address, Event, HostClock, Stream, StreamOptions, wait};
 use lunula_live::wire::{Meaning, Use};
@@ -35,10 +36,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     while !stream.ended() {
         wait(&[&stream], &[], None, &clock)?;
         let mut failed = Ok(());
-        stream.poll(clock.now_ns(), &mut |event| match event {
-            Event::Row(row) => failed = writeln!(out, "{} {:?}", row.time_s, row.values),
-            Event::Columns(names) => failed = writeln!(out, "{}", names.join(" ")),
-            other => eprintln!("{other:?}"),
+        stream.poll(clock.now_ns(), &mut |event| {
+            match event {
+                Event::Row(row) => failed = writeln!(out, "{} {:?}", row.time_s, row.values),
+                Event::Columns(names) => failed = writeln!(out, "{}", names.join(" ")),
+                other => eprintln!("{other:?}"),
+            }
+            if failed.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         })?;
         failed?;
         out.flush()?;

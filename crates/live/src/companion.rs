@@ -56,14 +56,19 @@ impl Companion {
     }
 
     /// Adds a sample; `begins` where nothing is known of the time between it and the one before. Samples without a
-    /// time, and behind others, are passed over.
+    /// time, and behind others, are passed over; of several at one time the last counts.
     pub fn push(&mut self, time_s: f64, values: &[f64], begins: bool) {
-        let late = self.times_s.back().is_some_and(|last_s| time_s <= *last_s);
+        let late = self.times_s.back().is_some_and(|last_s| time_s < *last_s);
         if time_s.is_nan() || late || values.len() != self.width {
             return;
         }
+        if self.times_s.back() == Some(&time_s) {
+            let first = self.values.len() - self.width;
+            self.values.iter_mut().skip(first).zip(values).for_each(|(last, value)| *last = *value);
+            return;
+        }
         if let Some(last_s) = self.times_s.back().filter(|_| !begins) {
-            self.period.push(time_s - last_s);
+            self.period.push(time_s - last_s, 0.0);
         }
         if self.times_s.len() == MOST {
             self.drop_first();
@@ -98,7 +103,7 @@ impl Companion {
         let Some(&after_s) = self.times_s.get(1) else {
             return if self.ended { Known::Never } else { Known::NotYet };
         };
-        let most_s = self.period.median_s.map_or(UNKNOWN_GAP_S, |period_s| GAP_PERIODS * period_s);
+        let most_s = self.period.mean_s.map_or(UNKNOWN_GAP_S, |period_s| GAP_PERIODS * period_s);
         if after_s - before_s > most_s || self.begins[1] {
             return Known::Never;
         }
@@ -165,6 +170,17 @@ mod tests {
         assert!(asked(&mut forces, 0.05).1.is_nan());
         assert!(asked(&mut forces, 0.15).1.is_nan());
         assert_eq!(asked(&mut forces, 0.2), (Known::Yes, 3.0));
+    }
+
+    #[test]
+    fn of_several_samples_at_one_time_the_last_counts() {
+        let mut forces = Companion::new(1);
+        for (t_s, value) in [(0.1, 1.0), (0.1, 2.0), (0.1, 3.0), (0.2, 5.0)] {
+            forces.push(t_s, &[value], false);
+        }
+        assert_eq!(asked(&mut forces, 0.1), (Known::Yes, 3.0));
+        let (known, value) = asked(&mut forces, 0.15);
+        assert!(known == Known::Yes && (value - 4.0).abs() <= 1e-9);
     }
 
     #[test]

@@ -34,6 +34,8 @@ pub(super) struct FeedHealth {
     /// The line of the fastest rows.
     clock_fit: Option<ClockFit>,
     is_live: bool,
+    /// Whether its rows have no clock of their own: their times are this computer's, and need no line.
+    pub(super) by_arrival: bool,
     /// The latest common time that was given to a row, seconds.
     latest_s: f64,
     pub(super) rows: u64,
@@ -132,7 +134,11 @@ impl FeedHealth {
             self.clock_fit = None;
         }
         let arrival_s = 1e-9 * row.host_ns as f64;
-        let fitted_s = self.clock_fit.as_ref().map_or(arrival_s, |fit| fit.host_s(row.time_s));
+        let fitted_s = match &self.clock_fit {
+            _ if self.by_arrival => row.time_s,
+            Some(fit) => fit.host_s(row.time_s),
+            None => arrival_s,
+        };
         // No row comes before it was made, and a line that is drawn again may lie lower.
         self.latest_s = self.latest_s.max(fitted_s.min(arrival_s));
         self.latest_s

@@ -1,6 +1,8 @@
 //! One finger of a session: its sensor's source, a force transducer's where that is a device of its own, and what is
 //! done with its rows.
 
+use std::ops::ControlFlow;
+
 use lunula_live::latency::Latency as Times;
 use lunula_live::source::{Event, HostClock, State};
 use lunula_live::wire::Row;
@@ -149,18 +151,21 @@ impl<'a> Lane<'a> {
 impl Work {
     /// Takes what has come from a source: the sensor, or the force transducer.
     fn take(&mut self, feed: &mut Feed<'_>, is_force: bool, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        // What is left of a sensor's stream lies behind the end.
+        if shared.ends && !is_force {
+            return Ok(());
+        }
         let Feed { source, stream, recognizer, health } = feed;
         let is_live = stream.is_live();
         let mut fault = None;
         let now_ns = shared.clock.now_ns();
         let mut on = |event: Event<'_>| {
-            // Forces are heard on: rows that are recorded wait for them.
-            if fault.is_some() || shared.ends && !is_force {
-                return;
-            }
             let done = match event {
-                Event::Columns(_) if is_force => self.join(recognizer.take().values, shared),
-                Event::Columns(_) => self.begin(recognizer.take(), shared),
+                Event::Columns(_) => {
+                    let columns = recognizer.take();
+                    health.by_arrival = !columns.time;
+                    if is_force { self.join(columns.values, shared) } else { self.begin(columns, shared) }
+                }
                 Event::Row(row) => {
                     // Of a recording many rows are handed out at one time.
                     let begin_ns = if is_live { row.host_ns } else { shared.clock.now_ns() };
@@ -186,6 +191,8 @@ impl Work {
                 Event::End => self.lose(true, shared),
             };
             fault = done.err();
+            // Forces are heard on: rows that are recorded wait for them.
+            if fault.is_some() || shared.ends && !is_force { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         stream.poll(now_ns, &mut on).map_err(|why| source_fault(source, why))?;
         fault.map_or(Ok(()), Err)

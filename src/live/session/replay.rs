@@ -1,5 +1,6 @@
 //! A recording read row by row as a session would, as fast as possible.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use lunula_live::source::{Address, Event, Form, HostClock, OfFinger, Pace, Place};
@@ -44,16 +45,19 @@ pub(crate) fn each_row(
     let (mut fault, mut rows) = (None, 0u64);
     while !feed.stream.ended() && fault.is_none() {
         watch.go_on()?;
-        let mut on = |event: Event<'_>| match event {
-            Event::Columns(_) => {
-                known = feed.recognizer.take();
-                fault = columns(&known).err();
+        let mut on = |event: Event<'_>| {
+            match event {
+                Event::Columns(_) => {
+                    known = feed.recognizer.take();
+                    fault = columns(&known).err();
+                }
+                Event::Row(one) => {
+                    rows += 1;
+                    fault = row(one).err();
+                }
+                _ => {}
             }
-            Event::Row(one) if fault.is_none() => {
-                rows += 1;
-                fault = row(one).err();
-            }
-            _ => {}
+            if fault.is_none() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         feed.stream.poll(clock.now_ns(), &mut on).map_err(|why| source_fault(&source, why))?;
     }

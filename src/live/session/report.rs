@@ -254,6 +254,11 @@ impl SessionFigures {
 /// More rows than this share that are not answered in full are a warning: lags and ambient light lack the first ones.
 const FEW: f64 = 0.02;
 
+/// Rows without a clock that come in longer bursts are a warning, seconds: *measured*, on the rows that press of two
+/// phantoms' recordings, forces that are so late are 0.06 N off (RMS; their `Fz_N` spreads by 1.1 N), of the 16 ms of a
+/// USB bridge 0.02 N.
+const BURST_S: f64 = 0.05;
+
 /// Below so many rows nothing is said of how far apart they are (assumed).
 const STEPS: u64 = 10;
 /// A device's clock whose drift against the host's is less is right about its unit, millionths (assumed).
@@ -303,6 +308,14 @@ fn losses(report: &SessionReport) -> Vec<String> {
             if count > 0 {
                 warnings.push(format!("{whose}{count} {what} {how}"));
             }
+        }
+        if let Some(burst_s) = stream.burst_s.filter(|burst_s| *burst_s > BURST_S) {
+            warnings.push(format!(
+                "{whose}{what} have no time of their own and come in bursts, {:.0} ms apart: their times are spread \
+                 over each burst and may be wrong by as much; let the device send its time in a column time_us, or \
+                 each row by itself",
+                1e3 * burst_s
+            ));
         }
         let of = if *gives == SourceRole::Forces { "--force: " } else { "" };
         warnings.extend(unit(stream).map(|doubt| format!("{whose}{of}{doubt}")));
@@ -362,6 +375,7 @@ mod tests {
             host_start_unix_s: None,
             counts,
             rate_hz: Some(step_s.recip()),
+            burst_s: None,
             spoilt: Vec::new(),
             gaps: Vec::new(),
             gaps_count: 0,

@@ -23,8 +23,11 @@ pub struct StreamCertificate {
     /// Rows that came, and rows that did not.
     #[serde(flatten)]
     pub counts: RowCounts,
-    /// Rows in a second, by the median step; none where it is not known.
+    /// Rows in a second, by the mean step without gaps; none where it is not known.
     pub rate_hz: Option<f64>,
+    /// How long the bursts are in which rows without a clock arrive, seconds; none where they have one, or come one by
+    /// one.
+    pub burst_s: Option<f64>,
     /// Spoilt rows by kind, with the first of each.
     pub spoilt: Vec<SpoiltRows>,
     /// Gaps of more than five periods, the first hundred.
@@ -49,7 +52,7 @@ pub struct StreamCertificate {
 pub enum StreamTimes {
     /// The device's own.
     Device,
-    /// The host's, when rows arrived: the device sends none.
+    /// The host's, when rows arrived, spread over the time since the arrival before: the device sends none.
     Arrival,
 }
 

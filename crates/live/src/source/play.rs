@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::latency::Latency;
 use crate::source::address::Pace;
 use crate::source::fault::SourceFault;
+use crate::time::RowCounts;
 
 /// Bytes that are read at a time.
 const PIECE: usize = 1 << 16;
@@ -22,6 +23,8 @@ pub(in crate::source) struct Waiting {
     pub(in crate::source) lost: u64,
     pub(in crate::source) begins: bool,
     pub(in crate::source) due_ns: u64,
+    /// Rows counted before it.
+    pub(in crate::source) before: RowCounts,
 }
 
 /// A recording that is played.

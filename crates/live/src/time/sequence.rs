@@ -7,6 +7,7 @@
 //! A clock that leaps, on a link that may damage rows, is believed when a second row agrees with it; the first is
 //! dropped as doubtful.
 
+use crate::time::arrivals::Arrivals;
 use crate::time::counter::{Count, Counter};
 use crate::time::period::Period;
 use crate::time::unwrap::{Expected, Reading, Unwrap};
@@ -15,9 +16,6 @@ use crate::wire::{Meaning, Sample, Use};
 /// Rows that are at most so many periods behind are late, and as many in a row at most: otherwise the clock was set
 /// back. As where logs are sorted.
 const LATE_ROWS: u32 = 16;
-
-/// A step of more than so many periods holds lost rows.
-const LOST_PERIODS: f64 = 1.5;
 
 /// A device that comes back with a clock that differs from the host's by more than this started again meanwhile,
 /// seconds and as a part of the time that passed (*assumed*: quartz is a hundred times better).
@@ -69,7 +67,8 @@ pub struct RowCounts {
     pub rows: u64,
     /// Rows that never came or came late, by the counter.
     pub lost: u64,
-    /// Rows that probably never came, by gaps in time of more than 1.5 periods; of streams without a counter.
+    /// Rows that probably never came, by gaps in time of more than 1.5 periods and than the clock's resolution
+    /// explains; of streams without a counter.
     pub lost_by_time: u64,
     /// Rows that came twice and were dropped.
     pub duplicates: u64,
@@ -94,14 +93,14 @@ pub struct Sequence {
     /// A stamp that was not believed, and when it came.
     doubt: Option<(f64, u64)>,
     period: Period,
+    /// Of rows without a clock.
+    arrivals: Arrivals,
     /// What is added to the device's seconds since its clock was set.
     shift_s: f64,
     last: Option<Last>,
     begins: bool,
     away: bool,
     late_run: u32,
-    /// Rows and host time since the last step of a stream without a clock.
-    block: (u32, u64),
     counts: RowCounts,
 }
 
@@ -127,12 +126,12 @@ impl Sequence {
             link,
             doubt: None,
             period: Period::default(),
+            arrivals: Arrivals::default(),
             shift_s: 0.0,
             last: None,
             begins: true,
             away: false,
             late_run: 0,
-            block: (0, 0),
             counts: RowCounts::default(),
         }
     }
@@ -150,7 +149,19 @@ impl Sequence {
     /// The time from row to row, seconds; none before it is known.
     #[must_use]
     pub fn period_s(&self) -> Option<f64> {
-        self.period.median_s
+        if self.clock.is_some() { self.period.mean_s } else { self.arrivals.period.mean_s }
+    }
+
+    /// So many rows arrive next, at once; of use where they have no time of their own.
+    pub fn announce(&mut self, rows: usize) {
+        self.arrivals.announce(rows);
+    }
+
+    /// How long the bursts are in which rows without a time of their own arrive, seconds; none where they come one by
+    /// one.
+    #[must_use]
+    pub fn burst_s(&self) -> Option<f64> {
+        self.arrivals.burst_s()
     }
 
     /// Whether rows have a time of their own.
@@ -189,7 +200,7 @@ impl Sequence {
         let expected = Expected { host_s, period_s: self.period_s() };
         let before = self.clock.clone();
         let device_s = match &mut self.clock {
-            None => Device::Host(seconds(host_ns)),
+            None => Device::Host(self.arrivals.time_s(seconds(host_ns))),
             Some(_) if sample.time.is_nan() => Device::Unknown,
             Some((unwrap, per_second)) => match unwrap.read(sample.time, expected) {
                 Reading::On(time) => Device::At(time / *per_second),
@@ -316,7 +327,7 @@ impl Sequence {
     fn set_back(&mut self, sample: &Sample, host_ns: u64, host_s: Option<f64>) -> Verdict {
         self.begin_again(sample);
         let passed_s = host_s.or(self.period_s()).unwrap_or(0.0);
-        let (mut device_s, mut step_s) = (Device::Host(seconds(host_ns)), None);
+        let (mut device_s, mut step_s) = (Device::Host(self.arrivals.latest_s()), None);
         if let Some((unwrap, per_second)) = &mut self.clock {
             device_s = Device::Unknown;
             if !sample.time.is_nan() {
@@ -341,40 +352,29 @@ impl Sequence {
             Device::Back { .. } | Device::Unknown => return Verdict::Row { time_s: f64::NAN, lost, begins },
         };
         if let (Some(step_s), false) = (step_s, begins) {
-            self.step(step_s, lost, host_ns);
+            self.step(step_s, lost);
         }
         self.last = Some(Last { time_s, host_ns });
         Verdict::Row { time_s, lost, begins }
     }
 
     /// Learns the period, and counts what a gap hides.
-    fn step(&mut self, step_s: f64, lost: u64, host_ns: u64) {
-        if self.clock.is_none() {
-            // Rows come in heaps: their period shows over many.
-            const BLOCK: u32 = 8;
-            if self.block.0 == 0 {
-                self.block.1 = host_ns;
-            }
-            self.block.0 += 1;
-            if self.block.0 > BLOCK {
-                self.period.push(seconds(host_ns.saturating_sub(self.block.1)) / f64::from(BLOCK));
-                self.block = (1, host_ns);
-            }
-            return;
-        }
-        if let (false, Some(period_s)) = (self.counted, self.period_s())
-            && step_s > LOST_PERIODS * period_s
+    fn step(&mut self, step_s: f64, lost: u64) {
+        let Some((unwrap, per_second)) = &self.clock else { return };
+        let resolution_s = unwrap.resolution() / per_second;
+        if let (false, Some(period_s), Some(longest_s)) = (self.counted, self.period_s(), self.period.longest_s())
+            && step_s > longest_s
         {
             self.counts.lost_by_time += ((step_s / period_s).round() as u64).saturating_sub(1);
         }
-        self.period.push(step_s / (lost + 1) as f64);
+        self.period.push(step_s / (lost + 1) as f64, resolution_s);
     }
 }
 
 /// When a sample was taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Device {
-    /// By its arrival.
+    /// By its arrival, seconds.
     Host(f64),
     /// By the device's clock, seconds.
     At(f64),

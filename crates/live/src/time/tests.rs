@@ -29,13 +29,18 @@ fn row(verdict: Verdict) -> (f64, u64, bool) {
 }
 
 #[test]
-fn rows_without_a_clock_have_the_time_of_their_arrival() {
+fn rows_without_a_clock_are_spread_up_to_their_arrival() {
     let mut rows = sequence(&[Use::Counter], Link::Device);
     for n in 0..100_u64 {
-        // Ten rows in a heap each.
+        // Ten rows in a heap each; of the first nothing is known before.
         let host_ns = 1000 * MS + n / 10 * 10 * MS;
-        let expected = (host_ns as f64 / 1e9, u64::from(n == 50) * 3, n == 0);
-        assert_eq!(row(rows.take(&sample(f64::NAN, Some(n + u64::from(n >= 50) * 3)), host_ns)), expected);
+        if n % 10 == 0 {
+            rows.announce(10);
+        }
+        let expected_s = if n < 10 { 1.0 } else { (991.0 + n as f64) / 1e3 };
+        let (time_s, lost, begins) = row(rows.take(&sample(f64::NAN, Some(n + u64::from(n >= 50) * 3)), host_ns));
+        assert!((time_s - expected_s).abs() <= 1e-9, "{n}: {time_s}");
+        assert_eq!((lost, begins), (u64::from(n == 50) * 3, n == 0));
     }
     assert!((rows.period_s().unwrap() - 1e-3).abs() <= 3e-4, "{:?}", rows.period_s());
     assert_eq!(rows.now_s(1_100 * MS), 1.1);
@@ -54,6 +59,27 @@ fn gaps_without_a_counter_are_an_estimate() {
     assert_eq!((counts.rows, counts.lost, counts.lost_by_time), (sent, 0, 90));
     assert!((rows.period_s().unwrap() - 1e-3).abs() <= 1e-9);
     assert_eq!(rows.now_s(u64::MAX), 0.989, "the recording's own time");
+}
+
+#[test]
+fn of_whole_milliseconds_only_gaps_beyond_them_are_lost_rows() {
+    // Rows of which every 25th is lost, and how many of the lost ones a clock of milliseconds shows at least: a gap of
+    // two periods may be as long as a step of one.
+    for (rate_hz, least) in [(60.0, 1.0), (150.0, 1.0), (300.0, 1.0), (600.0, 0.95), (700.0, 0.6), (900.0, 0.1)] {
+        for every in [5000, 25] {
+            let mut rows = clocked(false, Link::Recording);
+            let mut lost = 0_u32;
+            for n in 0..3990 {
+                if n % every == every - 1 {
+                    lost += 1;
+                    continue;
+                }
+                row(rows.take(&sample((f64::from(n) * 1e3 / rate_hz).floor(), None), 0));
+            }
+            let found = rows.counts().lost_by_time as f64;
+            assert!(found >= least * f64::from(lost) && found <= f64::from(lost) + 2.0, "{rate_hz}: {found} of {lost}");
+        }
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Clocks that begin again: 2^32 microseconds are 71.58 minutes, 2^32 milliseconds 49.7 days.
 
+use crate::time::resolution::Resolution;
+
 /// A leap over the end of 32 bits of at most so many seconds is one, seconds, beyond twice what the host saw pass: a
 /// device that starts again reads nearly zero, whatever it read before (*assumed*).
 const LEAP_S: f64 = 10.0;
@@ -21,7 +23,7 @@ pub enum Reading {
 pub struct Expected {
     /// Seconds that passed on the host; none where rows do not come live.
     pub host_s: Option<f64>,
-    /// The median step, seconds.
+    /// The mean step, seconds.
     pub period_s: Option<f64>,
 }
 
@@ -35,6 +37,7 @@ pub struct Unwrap {
     base: f64,
     whole: bool,
     bits: Option<u32>,
+    resolution: Resolution,
     /// How often it wrapped.
     pub(crate) wraps: u64,
 }
@@ -43,14 +46,14 @@ impl Unwrap {
     /// A clock with so many units in a second.
     #[must_use]
     pub fn new(per_second: f64) -> Self {
-        Self { per_second, last: None, base: 0.0, whole: true, bits: None, wraps: 0 }
+        Self { per_second, last: None, base: 0.0, whole: true, bits: None, resolution: Resolution::default(), wraps: 0 }
     }
 
     /// Reads a stamp; one that is [`Reading::Back`] changes nothing.
     pub fn read(&mut self, stamp: f64, expected: Expected) -> Reading {
         self.whole &= stamp.fract() == 0.0 && stamp >= 0.0;
         let Some(last) = self.last else {
-            self.last = Some(stamp);
+            self.set(stamp);
             return Reading::On(stamp);
         };
         if stamp < last {
@@ -60,12 +63,20 @@ impl Unwrap {
             self.wraps += 1;
         }
         self.last = Some(stamp);
+        self.resolution.read(stamp);
         Reading::On(stamp + self.base)
     }
 
     /// The clock was set: what it counts begins at a stamp.
     pub fn set(&mut self, stamp: f64) {
         (self.last, self.base) = (Some(stamp), 0.0);
+        self.resolution.read(stamp);
+    }
+
+    /// The clock's resolution, by the stamps so far; in its unit.
+    #[must_use]
+    pub fn resolution(&self) -> f64 {
+        self.resolution.unit()
     }
 
     /// The bits over whose end the step from `last` to `stamp` leads.

@@ -17,8 +17,8 @@ use crate::wire::{Decoded, Row};
 /// The most bytes that are read at a time, and the longest datagram.
 const PIECE: usize = 1 << 16;
 
-/// The most datagrams that are read at a time.
-const DATAGRAMS: u32 = 64;
+/// The most datagrams, or pieces of rows without a clock, that are read at a time.
+const PIECES: u32 = 64;
 
 /// A port, and how it is opened again.
 pub(super) struct Live {
@@ -94,7 +94,8 @@ impl Live {
             port,
             again,
             names: None,
-            buffer: vec![0; PIECE],
+            // Behind a whole piece there is room for another and its end.
+            buffer: vec![0; 2 * PIECE + 1],
             opened_ns: now_ns,
             notes: Vec::new(),
             baud: None,
@@ -154,6 +155,32 @@ impl Live {
         self.port.is_some().then_some(true)
     }
 
+    /// Reads what is there: one piece, but of datagrams, and of rows without a clock, all that came by now. How many
+    /// bytes, and whether the port is gone. Each datagram ends a row, which `end` shows.
+    fn gather(&mut self, end: u8, has_clock: bool) -> (usize, bool) {
+        let Some(port) = &mut self.port else { return (0, false) };
+        let datagrams = matches!(port, Port::Udp(_));
+        let mut count = 0;
+        for _ in 0..PIECES {
+            match port.read(&mut self.buffer[count..count + PIECE]) {
+                Received::Nothing => break,
+                Received::Gone => return (count, true),
+                Received::Bytes(more) => {
+                    self.bytes += more as u64;
+                    count += more;
+                    if datagrams && self.buffer[count - 1] != end {
+                        self.buffer[count] = end;
+                        count += 1;
+                    }
+                }
+            }
+            if !datagrams && has_clock || count >= PIECE {
+                break;
+            }
+        }
+        (count, false)
+    }
+
     /// Closes the port; whether it is opened again.
     fn lose(&mut self) -> bool {
         self.port = None;
@@ -180,45 +207,37 @@ impl Stream {
             // Open, and silent until a row comes.
             let condition = if self.health.any { Condition::Stalled } else { Condition::Ok };
             if let Some(state) = self.health.set(condition, now_ns) {
-                on(Event::State(state));
+                on.send(Event::State(state));
             }
             self.health.opened(now_ns);
         }
-        for _ in 0..DATAGRAMS {
-            let Feed::Live(live) = &mut self.feed else { return Ok(()) };
-            let Some(port) = &mut live.port else { return Ok(()) };
-            let datagrams = matches!(port, Port::Udp(_));
-            match port.read(&mut live.buffer) {
-                Received::Nothing => break,
-                Received::Gone => return self.gone(now_ns, on),
-                Received::Bytes(count) => {
-                    live.bytes += count as u64;
-                    let buffer = std::mem::take(&mut live.buffer);
-                    let decoded = self.decode(&buffer[..count], datagrams, now_ns, on);
-                    if let Feed::Live(live) = &mut self.feed {
-                        live.buffer = buffer;
-                    }
-                    decoded?;
-                }
+        let end = if self.form == Some(Form::Frames) { 0 } else { b'\n' };
+        let has_clock = self.sequence.as_ref().is_none_or(Sequence::has_clock);
+        let (count, gone) = live.gather(end, has_clock);
+        if count > 0 {
+            let buffer = std::mem::take(&mut live.buffer);
+            let decoded = self.decode(&buffer[..count], end, now_ns, on);
+            if let Feed::Live(live) = &mut self.feed {
+                live.buffer = buffer;
             }
-            if !datagrams {
+            decoded?;
+        }
+        match on.is_over {
+            true => Ok(()),
+            false if gone => self.gone(now_ns, on),
+            false => self.look(now_ns, on),
+        }
+    }
+
+    fn decode(&mut self, mut bytes: &[u8], end: u8, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        if let Some(sequence) = self.sequence.as_mut().filter(|sequence| !sequence.has_clock()) {
+            sequence.announce(memchr::memchr_iter(end, bytes).count());
+        }
+        while let Some(step) = self.decoder.next(&mut bytes, now_ns).map_err(|fault| self.wire(fault))? {
+            self.live_step(step, now_ns, on)?;
+            if on.is_over {
                 break;
             }
-        }
-        self.look(now_ns, on)
-    }
-
-    fn decode(&mut self, mut bytes: &[u8], datagram: bool, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
-        let end = if self.form == Some(Form::Frames) { 0 } else { b'\n' };
-        let ended = bytes.last() == Some(&end);
-        self.decode_all(&mut bytes, now_ns, on)?;
-        // The end of a datagram is that of a row.
-        if datagram && !ended { self.decode_all(&mut &[end][..], now_ns, on) } else { Ok(()) }
-    }
-
-    fn decode_all(&mut self, bytes: &mut &[u8], now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
-        while let Some(step) = self.decoder.next(bytes, now_ns).map_err(|fault| self.wire(fault))? {
-            self.live_step(step, now_ns, on)?;
         }
         Ok(())
     }
@@ -252,10 +271,10 @@ impl Stream {
         }
         self.gaps.row(time_s, begins, sequence.period_s());
         if let Some(state) = self.health.row(now_ns) {
-            on(Event::State(state));
+            on.send(Event::State(state));
         }
         let Decoded { values, texts, .. } = self.decoder.decoded();
-        on(Event::Row(&Row { host_ns: now_ns, time_s, lit: sample.lit, lost, begins, values, texts }));
+        on.send(Event::Row(&Row { host_ns: now_ns, time_s, lit: sample.lit, lost, begins, values, texts }));
     }
 
     /// The port was unplugged, or standard input has ended.
@@ -269,13 +288,16 @@ impl Stream {
             }
             for condition in [Condition::Lost, Condition::Reconnecting] {
                 if let Some(state) = self.health.set(condition, now_ns) {
-                    on(Event::State(state));
+                    on.send(Event::State(state));
                 }
             }
             return Ok(());
         }
         while let Some(step) = self.decoder.finish(now_ns).map_err(|fault| self.wire(fault))? {
             self.live_step(step, now_ns, on)?;
+            if on.is_over {
+                return Ok(());
+            }
         }
         self.end(on);
         Ok(())
@@ -286,7 +308,7 @@ impl Stream {
         let clocked = self.sequence.as_ref().is_some_and(Sequence::has_clock);
         let period_s = self.period_s();
         if let Some(state) = self.health.look(now_ns, period_s, clocked) {
-            on(Event::State(state));
+            on.send(Event::State(state));
         }
         if self.garbled_for_ns().is_some_and(|since_ns| now_ns >= since_ns)
             && let Some(fault) = self.decoder.garbled()

@@ -6,6 +6,7 @@
 mod live;
 mod played;
 
+use std::ops::ControlFlow;
 use std::os::fd::BorrowedFd;
 
 use crate::latency::Latency;
@@ -15,7 +16,7 @@ use crate::source::decoder::{Decoder, Rows, Table};
 use crate::source::fault::SourceFault;
 use crate::source::health::{Condition, Health, State};
 use crate::source::play::{Bytes, Play};
-use crate::time::{ClockFit, Envelope, Link, Sequence};
+use crate::time::{ClockFit, Envelope, Link, RowCounts, Sequence};
 use crate::wire::{Frames, LineOptions, Lines, Meaning, Naming, Row, Sample, Spoil, SpoiltRows, Step, WireFault};
 use live::Live;
 
@@ -51,8 +52,17 @@ pub enum Event<'a> {
     End,
 }
 
-/// What is called with what happens.
-type Sink<'s> = dyn FnMut(Event<'_>) + 's;
+/// What is called with what happens, until it wants nothing more.
+struct Sink<'s> {
+    on: &'s mut dyn FnMut(Event<'_>) -> ControlFlow<()>,
+    is_over: bool,
+}
+
+impl Sink<'_> {
+    fn send(&mut self, event: Event<'_>) {
+        self.is_over |= (self.on)(event).is_break();
+    }
+}
 
 /// A stream of rows.
 pub struct Stream {
@@ -151,19 +161,21 @@ impl Stream {
         }
     }
 
-    /// Reads what is there, up to a piece of it, and hands out what happened. `now_ns` is the host's clock.
+    /// Reads what is there, up to a piece of it, and hands out what happened. `now_ns` is the host's clock. Where `on`
+    /// breaks off, what lies behind is not looked at, and the stream has ended.
     ///
     /// # Errors
     /// The stream cannot go on; it has ended then.
-    pub fn poll(&mut self, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+    pub fn poll(&mut self, now_ns: u64, on: &mut dyn FnMut(Event<'_>) -> ControlFlow<()>) -> Result<(), SourceFault> {
         if self.ended {
             return Ok(());
         }
+        let mut sink = Sink { on, is_over: false };
         let polled = match self.feed {
-            Feed::Live(_) => self.poll_live(now_ns, on),
-            Feed::Play(_) => self.poll_played(now_ns, on),
+            Feed::Live(_) => self.poll_live(now_ns, &mut sink),
+            Feed::Play(_) => self.poll_played(now_ns, &mut sink),
         };
-        self.ended |= polled.is_err();
+        self.ended |= polled.is_err() || sink.is_over;
         polled
     }
 
@@ -296,8 +308,9 @@ impl Stream {
                 true => StreamTimes::Device,
                 false => StreamTimes::Arrival,
             }),
+            burst_s: sequence.and_then(Sequence::burst_s),
             host_start_unix_s: self.host_start_unix_s,
-            counts: sequence.map(Sequence::counts).unwrap_or_default(),
+            counts: self.counts(),
             rate_hz: self.period_s().map(f64::recip),
             spoilt: self.decoder.decoded().tally.kinds.clone(),
             gaps: self.gaps.first.clone(),
@@ -310,11 +323,19 @@ impl Stream {
         }
     }
 
+    /// Rows counted so far; of a recording without the one that it holds next.
+    fn counts(&self) -> RowCounts {
+        match &self.feed {
+            Feed::Play(Play { waiting: Some(row), .. }) => row.before,
+            _ => self.sequence.as_ref().map(Sequence::counts).unwrap_or_default(),
+        }
+    }
+
     /// What is unusual about the stream, and what to do about it.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let Feed::Live(live) = &self.feed else { return Vec::new() };
-        let counts = self.sequence.as_ref().map(Sequence::counts).unwrap_or_default();
+        let counts = self.counts();
         let load = live.overload(counts.rows, counts.lost + counts.lost_by_time, self.period_s());
         live.notes.iter().cloned().chain(load).collect()
     }
@@ -336,13 +357,13 @@ impl Stream {
             return Err(SourceFault::Open { source_name: self.name.clone(), what });
         }
         self.sequence = Some(sequence);
-        on(Event::Columns(&self.decoder.decoded().names));
+        on.send(Event::Columns(&self.decoder.decoded().names));
         Ok(())
     }
 
     fn spoilt(&self, kind: Spoil, on: &mut Sink<'_>) {
         let first = self.decoder.decoded().tally.kinds.iter().find(|rows| rows.kind == kind && rows.count == 1);
-        on(Event::Spoilt { kind, first });
+        on.send(Event::Spoilt { kind, first });
     }
 
     fn wire(&self, fault: WireFault) -> SourceFault {
@@ -351,6 +372,6 @@ impl Stream {
 
     fn end(&mut self, on: &mut Sink<'_>) {
         self.ended = true;
-        on(Event::End);
+        on.send(Event::End);
     }
 }

@@ -27,17 +27,21 @@ impl Stream {
                 self.health.row(now_ns);
                 let Waiting { time_s, lit, lost, begins, .. } = row;
                 let Decoded { values, texts, .. } = self.decoder.decoded();
-                on(Event::Row(&Row { host_ns: now_ns, time_s, lit, lost, begins, values, texts }));
+                on.send(Event::Row(&Row { host_ns: now_ns, time_s, lit, lost, begins, values, texts }));
+            }
+            if on.is_over {
+                return Ok(());
             }
             match self.played_step(now_ns)? {
                 Some(Step::Columns { again }) => self.columns(again, on)?,
                 Some(Step::Spoilt(kind)) => self.spoilt(kind, on),
                 Some(Step::Sample(sample)) => {
                     let (Some(sequence), Feed::Play(play)) = (&mut self.sequence, &mut self.feed) else { continue };
+                    let before = sequence.counts();
                     let Verdict::Row { time_s, lost, begins } = sequence.take(&sample, now_ns) else { continue };
                     play.rows += 1;
                     let due_ns = play.due_ns(time_s, now_ns);
-                    play.waiting = Some(Waiting { time_s, lit: sample.lit, lost, begins, due_ns });
+                    play.waiting = Some(Waiting { time_s, lit: sample.lit, lost, begins, due_ns, before });
                 }
                 None if self.rewound()? => {}
                 None => {

@@ -49,6 +49,27 @@ fn once_is_enough_where_the_address_says_so() {
 }
 
 #[test]
+fn rows_without_a_clock_that_come_at_once_are_spread() {
+    let (mut reader, mut peer) = connected("");
+    peer.write_all(b"P1\n").unwrap();
+    for burst in 1..=12_usize {
+        peer.write_all("7\n".repeat(10).as_bytes()).unwrap();
+        reader.rows(10 * burst);
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // Of the first nothing is known before it.
+    let times: Vec<f64> = reader.log.rows[10..].iter().map(|row| row.time_s).collect();
+    assert!(times.windows(2).all(|pair| pair[1] > pair[0]), "{times:?}");
+    for burst in reader.log.rows[10..].chunks(10) {
+        let off_s = burst[9].time_s - burst[9].host_ns as f64 / 1e9;
+        // Only where this machine slept the last row is not at the arrival.
+        assert!(off_s <= 1e-9 && burst[9].time_s - burst[0].time_s >= 0.001, "{off_s} {burst:?}");
+    }
+    let certificate = reader.stream.certificate();
+    assert!(certificate.burst_s.is_some_and(|burst_s| burst_s >= 0.015), "{certificate:?}");
+}
+
+#[test]
 fn clients_may_come_and_go() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let mut reader = Reader::open(&format!("tcp-listen:{free}"));
@@ -238,7 +259,11 @@ fn a_live_row_allocates_nothing() {
         let until = count + rows;
         while count < until {
             wait(&[&stream], &[], None, &clock).unwrap();
-            stream.poll(clock.now_ns(), &mut |event| count += u64::from(matches!(event, Event::Row(_)))).unwrap();
+            let mut on = |event: Event<'_>| {
+                count += u64::from(matches!(event, Event::Row(_)));
+                ControlFlow::Continue(())
+            };
+            stream.poll(clock.now_ns(), &mut on).unwrap();
         }
     };
     cycle(&mut peer, b"time_us,n,P1\n0,0,1\n", 1);

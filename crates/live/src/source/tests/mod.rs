@@ -6,6 +6,7 @@ mod live;
 mod lsl;
 mod played;
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use crate::source::{Address, Condition, Event, HostClock, SourceFault, Stream, StreamOptions, wait};
@@ -77,7 +78,10 @@ impl Reader {
             wait(&[&self.stream], &[], Some(until_ns), &self.clock).unwrap();
             let now_ns = self.clock.now_ns();
             assert!(now_ns < until_ns, "{:?}", self.log);
-            self.stream.poll(now_ns, &mut |event| self.log.take(event))?;
+            self.stream.poll(now_ns, &mut |event| {
+                self.log.take(event);
+                ControlFlow::Continue(())
+            })?;
         }
         Ok(())
     }

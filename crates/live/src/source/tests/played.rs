@@ -1,9 +1,10 @@
 //! Recordings played back.
 
 use std::io::Write;
+use std::net::TcpListener;
 
 use super::*;
-use crate::source::{Pace, Rows};
+use crate::source::{Pace, Rows, StreamCertificate};
 
 fn file(text: &[u8]) -> tempfile::NamedTempFile {
     let mut file = tempfile::NamedTempFile::new().unwrap();
@@ -64,6 +65,54 @@ fn a_file_begins_again_where_it_is_looped() {
     }
     assert_eq!((log.columns, log.spoilt), (1, 0));
     assert!(log.rows.iter().all(|row| row.lost == 0));
+}
+
+/// The certificate of a stream that nobody wants any more after so many rows.
+fn broken_off(mut stream: Stream, clock: &HostClock, most: usize) -> StreamCertificate {
+    let mut rows = 0;
+    while !stream.ended() {
+        wait(&[&stream], &[], None, clock).unwrap();
+        let mut on = |event: Event<'_>| {
+            rows += usize::from(matches!(event, Event::Row(_)));
+            assert!(rows <= most, "{event:?}");
+            if rows == most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        stream.poll(clock.now_ns(), &mut on).unwrap();
+    }
+    stream.certificate()
+}
+
+#[test]
+fn what_lies_behind_the_end_does_not_count() {
+    // A gap in time and a spoilt line, in the piece that is read.
+    let mut text = "time_s,P1\n".to_owned();
+    (0..400)
+        .filter(|k| !(200..300).contains(k))
+        .for_each(|k| text.push_str(&format!("{}.{:02},1\n", k / 100, k % 100)));
+    text.push_str("spoilt\n");
+    let file = file(text.as_bytes());
+    let address = file.path().display().to_string();
+    for (query, most, lost, set_back) in [("", 200, 0, 0), ("", 201, 100, 0), ("?loop", 650, 200, 2)] {
+        let Reader { stream, clock, .. } = Reader::open(&format!("{address}{query}"));
+        let found = broken_off(stream, &clock, most);
+        assert_eq!((found.counts.rows, found.counts.lost_by_time), (most as u64, lost), "{query} {most}");
+        assert_eq!((found.counts.set_back, found.spoilt.len()), (set_back, usize::from(set_back > 0)));
+    }
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let Reader { stream, clock, .. } = Reader::open(&format!("tcp:{}?once", listener.local_addr().unwrap()));
+    listener.accept().unwrap().0.write_all(text.as_bytes()).unwrap();
+    let found = broken_off(stream, &clock, 200);
+    assert_eq!((found.counts.rows, found.counts.lost_by_time, found.spoilt.len()), (200, 0, 0));
+}
+
+#[test]
+fn a_row_that_waits_for_its_time_does_not_count_yet() {
+    let file = file(b"time_s,P1\n0.00,1\n0.01,1\n0.02,1\n0.03,1\n9000,1\n");
+    let mut reader = Reader::open(&format!("{}?rate=1", file.path().display()));
+    reader.rows(4);
+    reader.stream.poll(reader.clock.now_ns(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let counts = reader.stream.certificate().counts;
+    assert_eq!((counts.rows, counts.lost_by_time), (4, 0));
 }
 
 #[test]
@@ -137,7 +186,11 @@ fn a_played_row_allocates_nothing() {
     let Reader { mut stream, .. } = Reader::open(&file.path().display().to_string());
     let mut rows = 0_u64;
     let mut poll = |stream: &mut Stream| {
-        stream.poll(0, &mut |event| rows += u64::from(matches!(event, Event::Row(_)))).unwrap();
+        let mut on = |event: Event<'_>| {
+            rows += u64::from(matches!(event, Event::Row(_)));
+            ControlFlow::Continue(())
+        };
+        stream.poll(0, &mut on).unwrap();
         rows
     };
     poll(&mut stream);
