@@ -11,6 +11,7 @@ use super::decide::{COUNTS, Decide};
 use super::feed::Feed;
 use super::lane::{Lane, Shared};
 use super::outputs::pointer::{PointerCounts, PointerOutput};
+use super::outputs::samples::Samples;
 use super::outputs::switch::{SwitchCounts, SwitchOutput};
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
@@ -122,7 +123,8 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     let latency =
         Latency { arrival: shared.arrival.summary(), work: shared.work.summary(), wake_up: late.or(wake_up.summary()) };
     let mut figures = SessionFigures { out: files.out.clone(), latency, ..SessionFigures::default() };
-    let (mut failed, mut silent, mut doubts, mut is_gated) = (Vec::new(), Vec::new(), Vec::new(), false);
+    let (mut failed, mut silent, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut is_gated, mut is_recorded) = (false, false);
     for lane in lanes {
         let finger = lane.finger();
         for (feed, gives) in lane.feeds().zip([SourceRole::Samples, SourceRole::Forces]) {
@@ -139,6 +141,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
         let period_s = lane.feed.stream.period_s();
         if let Some(decide) = lane.work.decide {
             is_gated |= decide.answers.as_ref().is_some_and(|answers| answers.sensor.answering.is_gated());
+            is_recorded |= decide.samples.as_ref().is_some_and(Samples::is_recorded);
             let of_finger = figures.add(decide, period_s, &mut shared.notes, &mut failed);
             let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
             doubts.extend(of_finger.into_iter().map(|doubt| format!("{whose}{doubt}")));
@@ -181,7 +184,8 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     report.warnings.extend(losses);
     let mut report = report.timed(&Stages::default(), start);
-    if let Some(out) = &files.out {
+    // A recording of before, which is as it was, has a certificate of its own.
+    if let Some(out) = files.out.as_ref().filter(|_| is_recorded) {
         let mut places = Places::not_over(files.models.iter().map(|model| &model.what));
         let written = places.write(&beside(out, REPORT), &report.text()).and_then(|()| places.commit());
         // Rows stand there, and what of them could not be recorded has to be said as well.

@@ -63,6 +63,23 @@ fn the_same_seed_gives_the_same_bytes_and_another_does_not() {
 }
 
 #[test]
+fn where_nothing_was_collected_a_recording_of_before_keeps_its_certificate() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["r.csv", "r.stream.json", "r.run.json"] {
+        std::fs::write(dir.path().join(name), "kept").unwrap();
+    }
+    let files = PromptFiles { protocol: None, out: dir.path().join("r.csv"), replace: true };
+    // Rows come, and nobody at the page says that they may be recorded.
+    let options = StreamOptions { seconds: Some(1.0), ..options("phantom:subject?seed=3") };
+    let report = Prompter::new(&options, &files, Arc::new(Nobody)).unwrap().run(None, &|_| {}, &Watch::nobody());
+    let report = report.unwrap();
+    assert!(report.rows == 0 && report.failed.iter().any(|why| why.contains("nothing is written")), "{report:?}");
+    for name in ["r.csv", "r.stream.json", "r.run.json"] {
+        assert_eq!(std::fs::read_to_string(dir.path().join(name)).unwrap(), "kept", "{name}");
+    }
+}
+
+#[test]
 fn what_can_not_be_prompted_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let refused = |source: &str| run(dir.path(), source, SHORT).map(|_| ()).unwrap_err().to_string();

@@ -35,6 +35,7 @@ pub(crate) struct Recording {
     waits: bool,
     shared: Arc<Shared>,
     writer: Option<JoinHandle<io::Result<()>>>,
+    begun: bool,
     /// Rows that were left out as the disk was too slow.
     pub(crate) lost: u64,
 }
@@ -79,6 +80,7 @@ impl Recording {
             waits,
             shared: Arc::default(),
             writer: None,
+            begun: false,
             lost: 0,
         })
     }
@@ -128,6 +130,7 @@ impl Recording {
         let mut file = made.map_err(|why| self.refused(why))?;
         let header = self.columns.join(",") + "\n";
         file.write_all(header.as_bytes()).map_err(|why| self.refused(why))?;
+        self.begun = true;
         let shared = Arc::clone(&self.shared);
         self.writer = Some(std::thread::spawn(move || {
             let written = write_rows(&mut file, &shared);
@@ -140,6 +143,11 @@ impl Recording {
 
     fn refused(&self, why: io::Error) -> LiveError {
         LiveError::Write { path: self.grows.clone(), why }
+    }
+
+    /// Whether a row came, and the file was begun.
+    pub(crate) fn is_begun(&self) -> bool {
+        self.begun
     }
 
     fn close(&mut self) -> Result<(), LiveError> {

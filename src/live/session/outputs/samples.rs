@@ -222,6 +222,11 @@ impl Samples {
         Ok(())
     }
 
+    /// Whether a row is recorded, or will be when its force is known.
+    pub(crate) fn is_recorded(&self) -> bool {
+        self.recording.is_begun() || self.is_waiting()
+    }
+
     /// Whether a row waits for a force.
     pub(crate) fn is_waiting(&self) -> bool {
         self.forces.as_ref().is_some_and(|forces| !forces.waiting.is_empty())
