@@ -1,8 +1,8 @@
 //! `lunula switch evaluate`: false switches an hour, misses and delays of a switch on recordings.
 //!
 //! In: `switch.toml`, recordings with what is true of contact, the models. Out, in a folder: `switch.json`
-//! ([`EvaluateSwitchReport`]), `presses.csv` (a row per press and per missed contact, to look at the false ones), and
-//! the delays drawn.
+//! ([`EvaluateSwitchFigures`]), `presses.csv` (a row per press and per missed contact, to look at the false ones), the
+//! delays drawn, and `run.json`, the [`EvaluateSwitchReport`] with warnings and times.
 
 use std::path::Path;
 use std::time::Instant;
@@ -17,11 +17,14 @@ use super::options::ContactOptions;
 use super::report::{note, of_another_model};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::figure::draw_charts;
-use crate::files::Staging;
+use crate::files::{Staging, json_text};
 use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
+
+/// The report, with warnings and times.
+const REPORT: &str = "run.json";
 
 /// How a switch did.
 pub type EvaluateSwitchReport = Report<EvaluateSwitchFigures>;
@@ -86,9 +89,11 @@ pub fn evaluate_switch(
         let draw = |png: &Path, svg: &Path| draw_charts(&[delays_chart(&found)], WIDTH, png, svg);
         report.pictures.push(stages.time("figures", || staging.draw("delays", draw))?);
     }
+    report.warn_of_earlier(&out.join(REPORT));
     let report = report.timed(&stages, start);
     if *with_report {
-        staging.write("switch.json", report.text().as_bytes())?;
+        staging.write("switch.json", json_text(&report.figures).as_bytes())?;
+        staging.write(REPORT, report.text().as_bytes())?;
     }
     staging.commit()?;
     Ok(report)

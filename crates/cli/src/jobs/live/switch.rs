@@ -44,7 +44,8 @@ struct TuneArgs {
 
 /// Judge a switch on recordings: false switches an hour with their interval, misses, delays
 ///
-/// Results: switch.json, presses.csv (presses that are judged and contacts that were missed), delays.png and .svg.
+/// Results: switch.json, presses.csv (presses that are judged and contacts that were missed), delays.png and .svg,
+/// run.json.
 #[derive(Debug, Args)]
 struct EvaluateArgs {
     /// The switch
