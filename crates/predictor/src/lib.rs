@@ -31,11 +31,11 @@ pub use data::mismatch::{Apart, Difference, Mismatch, Parts, beside_model};
 pub use data::path::{paths, repeated_paths};
 pub use data::shared::{shared, shared_within};
 pub use evaluate::{
-    Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Fit, Flattery, Fold, FoldResult,
-    IntervalFault, Intervals, Leak, LearningFault, LearningPoint, MagnitudeFault, Method, MethodScore, Predict, Scores,
-    Split, SplitFault, SplitTarget, TargetScore, by_magnitude, calibrate, compare_splits, coverage, cross_coverage,
-    cross_validate, flatteries, folds, leaks, learn_by_recordings, learn_by_share, magnitude_edges, nested_coverage,
-    recording_hashes, row_hashes, score, shared_rows,
+    Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, FEWEST_UNITS, Fit, Flattery, Fold,
+    FoldResult, IntervalFault, Intervals, Leak, LearningFault, LearningPoint, MagnitudeFault, Method, MethodScore,
+    Predict, Scores, Split, SplitFault, SplitTarget, TargetScore, by_magnitude, calibrate, compare_splits, coverage,
+    cross_coverage, cross_validate, flatteries, folds, leaks, learn_by_recordings, learn_by_share, magnitude_edges,
+    nested_coverage, recording_hashes, row_hashes, score, shared_rows,
 };
 pub use fit::{
     Directions, EigennailsReport, FitFault, FitReport, OnScores, Printed, fit_eigennails, fit_linear, fit_quadratic,

@@ -28,4 +28,6 @@ pub(crate) use rows::hex;
 pub use rows::{recording_hashes, row_hashes, shared_rows};
 pub use score::{Scores, TargetScore, score};
 pub use split::{By, Fold, SplitFault, folds};
-pub use splits::{Fit, Leak, Method, MethodScore, Predict, Split, SplitTarget, compare_splits, flatteries, leaks};
+pub use splits::{
+    FEWEST_UNITS, Fit, Leak, Method, MethodScore, Predict, Split, SplitTarget, compare_splits, flatteries, leaks,
+};

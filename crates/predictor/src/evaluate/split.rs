@@ -35,6 +35,15 @@ pub enum By {
     },
 }
 
+impl By {
+    /// Whether a part counts as one value, however many rows it has: what is said is of new persons, or new sessions,
+    /// and errors within one are alike.
+    #[must_use]
+    pub fn counts_parts(self) -> bool {
+        matches!(self, Self::Session | Self::Subject)
+    }
+}
+
 /// One part held out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fold {

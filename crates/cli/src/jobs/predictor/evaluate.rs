@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::Resettable;
 use lunula::job::Given;
+use lunula::predictor::models::FEWEST_UNITS;
 use lunula::predictor::{DataFile, EvaluateChoices, EvaluateReport, Splits, evaluate, evaluate_plan, way};
 
 use crate::jobs::predictor::{figure, say_merit};
@@ -98,7 +99,9 @@ fn say_splits(common: &Common, found: &Splits) {
             common.say(&format!("by {}: the same parts as by {}", way(split.by), way(other)));
             continue;
         }
-        common.say(&format!("by {} ({} parts)", way(split.by), split.parts));
+        let few = split.by.counts_parts() && split.parts < FEWEST_UNITS;
+        let why = if few { "; too few to know how sure an RMSE on others is" } else { "" };
+        common.say(&format!("by {} ({} parts{why})", way(split.by), split.parts));
         for one in &split.methods {
             if let Some(why) = one.fault.as_ref().filter(|_| one.targets.is_empty()) {
                 common.say(&format!("  {}: {why}", one.method));

@@ -8,6 +8,9 @@ pub(super) mod baseline;
 mod bootstrap;
 #[cfg(test)]
 mod tests;
+mod units;
+
+use std::rc::Rc;
 
 use ndarray::Array2;
 use serde::Serialize;
@@ -16,6 +19,7 @@ use super::cross::{CrossValidation, hold_out};
 use super::split::{By, folds};
 use crate::Dataset;
 use bootstrap::Blocks;
+pub use units::FEWEST_UNITS;
 
 /// Predicts rows: rows x targets; NaN is not known.
 pub type Predict<'a> = Box<dyn Fn(&Dataset) -> Array2<f64> + 'a>;
@@ -38,7 +42,8 @@ pub struct SplitTarget {
     pub name: String,
     /// Its unit; NaN of no rows.
     pub rmse: f64,
-    /// The 95 % interval of that, from blocks of time drawn again; none of too few.
+    /// The 95 % interval of that: of new persons or sessions where those are held out ([`By::counts_parts`]), else
+    /// from blocks of time drawn again; none of too few.
     pub interval: Option<[f64; 2]>,
     /// Whether it is surely below the mean's error on the same rows; none where that is not known.
     pub beats_mean: Option<bool>,
@@ -64,7 +69,7 @@ pub struct Split {
     pub by: By,
     /// In how many parts; 0 where nothing can be.
     pub parts: usize,
-    /// A way before it that holds out the very same parts.
+    /// A way before it that holds out the very same parts and has the same intervals.
     pub same_as: Option<By>,
     /// Method by method: the mean, the nearest row, then those given.
     pub methods: Vec<MethodScore>,
@@ -104,53 +109,69 @@ pub fn compare_splits<'a>(data: &Dataset, inputs: &'a [usize], ways: &[By], meth
     };
     let mut all = vec![own(MEAN, baseline::mean), own(NEAREST, baseline::nearest)];
     all.extend(methods);
-    let mut done: Vec<(Vec<Vec<usize>>, Split)> = Vec::new();
+    let mut done: Vec<(Vec<Vec<usize>>, Rc<Vec<Held>>, Split)> = Vec::new();
     for &by in ways {
-        let (parts, split) = match folds(data, by) {
+        let one = match folds(data, by) {
             Err(why) => {
-                (Vec::new(), Split { by, parts: 0, same_as: None, methods: Vec::new(), fault: Some(why.to_string()) })
+                let split = Split { by, parts: 0, same_as: None, methods: Vec::new(), fault: Some(why.to_string()) };
+                (Vec::new(), Rc::default(), split)
             }
             Ok(folds) => {
                 let parts: Vec<Vec<usize>> = folds.into_iter().map(|fold| fold.test).collect();
-                let same = done.iter().find(|(others, _)| *others == parts).map(|(_, split)| split);
-                let same_as = same.map(|split| split.by);
-                let same = same.map(|split| split.methods.clone());
-                let methods = same.unwrap_or_else(|| judged(data, by, &all));
-                (parts.clone(), Split { by, parts: parts.len(), same_as, methods, fault: None })
+                let same = || done.iter().filter(|(others, _, _)| *others == parts);
+                let held = same().next().map(|(_, held, _)| Rc::clone(held));
+                let held =
+                    held.unwrap_or_else(|| Rc::new(all.iter().map(|method| held_out(data, by, method)).collect()));
+                let alike = same().find(|(_, _, split)| split.by.counts_parts() == by.counts_parts());
+                let same_as = alike.map(|(_, _, split)| split.by);
+                let methods = scores(data, by, &parts, &all, &held);
+                let count = parts.len();
+                (parts, held, Split { by, parts: count, same_as, methods, fault: None })
             }
         };
-        done.push((parts, split));
+        done.push(one);
     }
-    done.into_iter().map(|(_, split)| split).collect()
+    done.into_iter().map(|(_, _, split)| split).collect()
 }
 
-fn judged(data: &Dataset, by: By, methods: &[Method<'_>]) -> Vec<MethodScore> {
+/// What came of a method with parts held out, or why nothing did.
+type Held = Result<CrossValidation, String>;
+
+fn held_out(data: &Dataset, by: By, method: &Method<'_>) -> Held {
+    hold_out(data, by, &|train| (method.fit)(train), &|model, test| model(test)).map_err(|why| why.to_string())
+}
+
+fn scores(data: &Dataset, by: By, parts: &[Vec<usize>], methods: &[Method<'_>], held: &[Held]) -> Vec<MethodScore> {
     let mut mean: Option<Array2<f64>> = None;
     let mut scores = Vec::new();
-    for method in methods {
-        scores.push(match hold_out(data, by, &|train| (method.fit)(train), &|model, test| model(test)) {
+    for (method, held) in methods.iter().zip(held) {
+        scores.push(match held {
             Ok(found) => {
                 let errors = found.residuals(data);
                 let baseline = mean.get_or_insert_with(|| errors.clone());
-                score(data, method, &found, &errors, baseline)
+                let interval = |errors: &[f64], baseline: &[f64]| match by.counts_parts() {
+                    true => units::interval(parts, errors, baseline),
+                    false => Blocks::of(data, errors, baseline).interval(),
+                };
+                score(method, found, [&errors, baseline], &interval)
             }
             Err(why) => {
-                MethodScore { method: method.name.clone(), rows: 0, targets: Vec::new(), fault: Some(why.to_string()) }
+                MethodScore { method: method.name.clone(), rows: 0, targets: Vec::new(), fault: Some(why.clone()) }
             }
         });
     }
     scores
 }
 
+/// Of the method's errors and the mean's.
 fn score(
-    data: &Dataset,
     method: &Method<'_>,
     found: &CrossValidation,
-    errors: &Array2<f64>,
-    mean: &Array2<f64>,
+    [errors, mean]: [&Array2<f64>; 2],
+    interval: &dyn Fn(&[f64], &[f64]) -> Option<([f64; 2], bool)>,
 ) -> MethodScore {
     let target = |(k, one): (usize, &super::TargetScore)| {
-        let interval = Blocks::of(data, &errors.column(k).to_vec(), &mean.column(k).to_vec()).interval();
+        let interval = interval(&errors.column(k).to_vec(), &mean.column(k).to_vec());
         SplitTarget {
             name: one.name.clone(),
             rmse: one.rmse,
