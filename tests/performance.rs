@@ -294,6 +294,32 @@ fn a_slip_in_one_row_and_trials_that_were_stopped_are_warned_of() {
 }
 
 #[test]
+fn who_stops_early_is_named_and_does_not_bend_the_curve() {
+    let dir = Dir::new();
+    // A and B differ by a factor; B, the slower, stops.
+    let study = |last_of_b: u32, skipped: u32| {
+        let decision_s = |trial: u32| 2.0 + 6.0 * (-(f64::from(trial) - 1.0) / 2.5).exp();
+        let of = |operator: &'static str, pace: f64| {
+            (1..=12).map(move |trial| (operator, "pendant", trial, pace * decision_s(trial)))
+        };
+        let done = of("B", 1.6).filter(|(_, _, trial, _)| *trial <= last_of_b && *trial != skipped);
+        judged(&dir, table(&of("A", 0.9).chain(done).collect::<Vec<_>>()))
+    };
+    let early = study(5, 0)
+        .says("stopped early: B after trial 5 of 12 with pendant.")
+        .says("pendant: 7 of 24 trials were not done")
+        .json();
+    // The mean of paces 0.9 and 1.6 is 1.25.
+    let curve = &early["methods"][0]["fitted"]["exponential"]["curve"];
+    for (name, exact) in [("a", 1.25 * 2.0), ("b", 1.25 * 6.0), ("c", 2.5)] {
+        let found = curve[name]["value"].number();
+        assert!((found - exact).abs() <= 1e-6, "{name}: {found}");
+    }
+    study(12, 0).never_says("stopped early").never_says("were not done");
+    study(11, 4).never_says("stopped early").says("pendant: 2 of 24 trials were not done");
+}
+
+#[test]
 fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
     let dir = Dir::new();
     dir.write("trials.csv", curves());

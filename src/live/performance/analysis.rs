@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lunula_live::performance::{Course, Curve, LEVEL, Law, Paired, Point};
+use lunula_live::performance::{Course, Curve, LEVEL, Law, Paired, Point, filled_means};
 use lunula_live::spread::{Spread, t_quantile};
 
 use super::read::{Row, Trials};
@@ -51,7 +51,7 @@ fn method(name: &str, times: &Times) -> MethodFigures {
         Some(TrialMean { trial, over_operators: Spread::of(of.values().copied())? })
     };
     let trials: Vec<TrialMean> = times.iter().filter_map(mean).collect();
-    let fitted = fit(&trials);
+    let fitted = fit(&trials, &filled_means(times));
     let last = trials.last().map_or(0.0, |last| f64::from(last.trial));
     let level = fitted.better_curve().and_then(|curve| curve.level_at).map(|trial| {
         // What the search leaves does not make it the next trial.
@@ -62,13 +62,14 @@ fn method(name: &str, times: &Times) -> MethodFigures {
     MethodFigures { method: name.to_owned(), operators, trials, fitted, levels_off: level }
 }
 
-fn fit(trials: &[TrialMean]) -> Fitted {
-    let point = |of: &TrialMean| Point {
+/// `means`: of each trial, as if every operator had done it.
+fn fit(trials: &[TrialMean], means: &[f64]) -> Fitted {
+    let point = |(of, &mean): (&TrialMean, &f64)| Point {
         trial: f64::from(of.trial),
-        mean: of.over_operators.mean,
+        mean,
         weight: of.over_operators.n as f64,
     };
-    let points: Vec<Point> = trials.iter().map(point).collect();
+    let points: Vec<Point> = trials.iter().zip(means).map(point).collect();
     let [exponential, power] = [Law::Exponential, Law::Power].map(|law| match Curve::fit(law, &points) {
         Ok(curve) => Fit { curve: Some(curve), not_fitted: None },
         Err(why) => Fit { curve: None, not_fitted: Some(why.to_string()) },

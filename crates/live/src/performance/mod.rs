@@ -6,8 +6,10 @@
 
 mod course;
 mod curve;
+mod filled;
 mod paired;
 
 pub use course::Course;
 pub use curve::{Curve, FEWEST_TRIALS, LEVEL, Law, Measured, NoCurve, Point};
+pub use filled::filled_means;
 pub use paired::Paired;
