@@ -16,5 +16,5 @@ mod warp;
 pub use contact::{Contact, Thresholds, contacts};
 pub use figures::{Figures, ranks};
 pub use force::Force;
-pub use smooth::{MOST_SAMPLES, spectral_arc_length};
+pub use smooth::{MOST_SAMPLES, noise_of_rate, spectral_arc_length};
 pub use warp::{MOST_POINTS, distance, resampled};

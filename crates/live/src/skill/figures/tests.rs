@@ -1,3 +1,7 @@
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
 use super::*;
 
 const THRESHOLDS: Thresholds = Thresholds { touch_n: 0.2, release_n: 0.1, hold_s: 0.05 };
@@ -107,5 +111,41 @@ fn a_press_is_as_smooth_at_any_time_of_the_day() {
     let first = smoothness(0.0);
     for from_s in [59.0, 3600.0, 34567.125, 50_000.0, 86_390.0] {
         assert!((smoothness(from_s) - first).abs() <= 1e-6, "{from_s}: {}", smoothness(from_s));
+    }
+}
+
+/// Presses of minimum jerk (`strokes` in each, up and down) with noise of so many newtons.
+fn strokes(rate_hz: f64, strokes: u32, peak_n: f64, noise_n: f64) -> Force {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let (all, step_s) = (f64::from(strokes), 0.8 / f64::from(strokes));
+    let up = |u: f64| u.powi(3) * (10.0 + u * (6.0 * u - 15.0));
+    let at = |time_s: f64| {
+        let one = |k: u32| {
+            let from_s = 1.0 + f64::from(k) * step_s;
+            let part = |from_s: f64| up(((time_s - from_s) / (0.6 * step_s)).clamp(0.0, 1.0));
+            (part(from_s) - part(from_s + 0.8)) / all
+        };
+        peak_n * (0..strokes).map(one).sum::<f64>()
+    };
+    let time_s: Vec<f64> = (0..(4.0 * rate_hz) as usize).map(|k| k as f64 / rate_hz).collect();
+    let mut noise = || noise_n * Distribution::<f64>::sample(&StandardNormal, &mut random);
+    Force { force_n: time_s.iter().map(|&time_s| at(time_s) + noise()).collect(), time_s, lifted: Vec::new() }
+}
+
+#[test]
+fn a_noisy_transducer_and_a_weak_finger_are_as_smooth_as_others() {
+    let of = |force: Force| Figures::of(&force, &THRESHOLDS).0.smoothness.unwrap();
+    for count in [1, 4] {
+        let clean = of(strokes(100.0, count, 2.0, 0.0));
+        for (rate_hz, noise_n) in [(250.0, 0.0), (1000.0, 0.0), (1000.0, 0.003), (1000.0, 0.01)] {
+            let found = of(strokes(rate_hz, count, 2.0, noise_n));
+            println!("{count} {rate_hz} {noise_n}: {found} {clean}");
+            assert!((found - clean).abs() <= 0.1, "{count} {rate_hz} {noise_n}: {found} {clean}");
+        }
+        for peak_n in [0.5, 1.0, 20.0] {
+            let found = of(strokes(100.0, count, peak_n, 0.0));
+            // What lies around differs by where thresholds are crossed.
+            assert!((found - clean).abs() <= 1e-3, "{count} {peak_n}: {found} {clean}");
+        }
     }
 }
