@@ -150,7 +150,12 @@ impl<'a> Solver<'a> {
             Parts::Subjects(_) if spread.mean == 0.0 => 1.0 - (1.0 - CONFIDENCE).powf(1.0 / spread.n as f64),
             _ => 0.0,
         };
-        let interval = [(spread.mean - half).max(0.0), (spread.mean + half).max(unseen)];
+        // Of persons an error is in units of the target's own spread, and has no upper limit.
+        let most = match &self.given.parts {
+            Parts::Subjects(_) => 1.0,
+            Parts::Persons => f64::INFINITY,
+        };
+        let interval = [(spread.mean - half).max(0.0), (spread.mean + half).max(unseen).min(most)];
         Some(LeftOut { error: spread.mean, se, interval })
     }
 }

@@ -384,6 +384,12 @@ fn poses_that_do_not_differ_are_confused_by_half_of_those_left_out() {
     // Photodiodes that show their noise alone say nothing of any pose.
     let (error, left_out) = run("k = '4'\ncells = 8\nnoise = 1e6");
     assert!((error - 0.5).abs() < 1e-6 && (left_out.error - 0.5).abs() < 1e-3, "{error} and {left_out:?}");
+    // Of few subjects Student's t reaches beyond all pictures, of which no more can be wrong.
+    let few = Folder::new();
+    maps(&few, &["a", "b"], 3, level);
+    let report = few.run(&["set"], "k = '1'\ncells = 8").unwrap();
+    let ends: Vec<f64> = report.methods.iter().filter_map(|one| Some(one.left_out?.interval[1])).collect();
+    assert!(ends.contains(&1.0) && ends.iter().all(|end| *end <= 1.0), "{ends:?}");
 }
 
 #[test]
