@@ -23,8 +23,8 @@ pub const MOST_SAMPLES: usize = 1 << 16;
 const FEWEST_SAMPLES: usize = 8;
 
 /// Faster changes of a rate are taken for noise, hertz: half as much again as the arc looks at. Measured on presses of
-/// 2 N that stutter in steps of 0.12 s: without noise the arc is -5.67, of 1000 rows a second with 0.01 N of white noise
-/// -5.63, of 100 with 0.01 N -5.50; at 20 Hz -5.75, -5.67 and -5.46.
+/// 2 N that stutter in steps of 0.12 s: of 1000 rows a second without noise the arc is -5.67, with 0.01 N of white
+/// noise -5.63, of 100 with that -5.50; at 20 Hz -5.75, -5.67 and -5.46.
 const LOW_PASS_HZ: f64 = 15.0;
 /// A Butterworth filter of the fourth order that is run forth and back leaves 1 / (1 + (f / cut-off)^8).
 const ORDER: i32 = 8;
