@@ -344,7 +344,10 @@ fn noise_near_the_threshold_is_no_contact() {
     dir.write("noisy.csv", noisy(0.25));
     run(&dir, "noisy.csv --out o").expect(0).says("noisy.csv: trial noisy: ").says("N (SD) or more, and --touch is");
     dir.write("quiet.csv", noisy(0.03));
-    run(&dir, "quiet.csv --out p").expect(0).never_says("scatters");
+    run(&dir, "quiet.csv --out p").expect(0).never_says("scatters").never_says("smoothness is in part");
+    // Too little for a contact, and enough to be seen in how smooth presses are.
+    dir.write("rough.csv", noisy(0.06));
+    run(&dir, "rough.csv --out r").expect(0).never_says("scatters").says("smoothness is in part that of the noise");
 }
 
 #[test]
