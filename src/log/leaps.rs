@@ -20,6 +20,8 @@ const RANGE: f64 = 0.1;
 const BACK: f64 = 0.2;
 /// A force that begins and ends so near to its middle, of its range, is one of a finger that rests (assumed).
 const RESTS: f64 = 0.1;
+/// A tap goes no further than other presses, but for this share of their range (assumed).
+const TAPS: f64 = 0.5;
 /// Below so many steps nothing is said.
 const LEAST_STEPS: usize = 50;
 
@@ -58,7 +60,8 @@ pub(super) fn leaps(name: &str, values: &[f64], ends: [f64; 2]) -> Option<Leaps>
     let are_taps = || {
         let Some(rest) = median_of(values.iter().copied().filter(|value| value.is_finite())) else { return false };
         let rests = |value: f64| (value - rest).abs() <= RESTS * range;
-        let is_tap = |row: &[f64]| rests(row[0]) && rests(row[2]) && (ends[0]..=ends[1]).contains(&row[1]);
+        let is_no_further = |value: f64| (ends[0] - TAPS * range..=ends[1] + TAPS * range).contains(&value);
+        let is_tap = |row: &[f64]| rests(row[0]) && rests(row[2]) && is_no_further(row[1]);
         2 * found.there <= found.rows && alone().all(is_tap)
     };
     (found.rows >= ROWS && !(is_force && are_taps())).then_some(found)

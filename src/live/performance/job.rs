@@ -281,6 +281,8 @@ fn counted_on(trials: &Trials) -> Option<String> {
 /// An operator who lacks so many of the last trials stopped; one that lacks may have been lost (assumed; where 5 % of
 /// all rows are lost by chance, 3 of 40 generated studies of 100 rows have such an operator).
 const ENDED_EARLY: u32 = 2;
+/// So many are named.
+const MOST_NAMED: usize = 10;
 
 /// Operators who did not go on as long as others did with a method: those who stop are seldom like those who stay.
 fn ended_early(trials: &Trials) -> Option<String> {
@@ -305,15 +307,12 @@ fn ended_early(trials: &Trials) -> Option<String> {
     named.extend((more > 0).then(|| format!("{more} more")));
     (!named.is_empty()).then(|| {
         format!(
-            "stopped early: {}. From there on means are of the others; the curve takes their course for who stopped, \
-             at his own pace: judge with the operators who did all trials, too",
+            "stopped early: {}. From there on means are of the others; the curve assumes that who stopped would have \
+             gone on as they did, at their own pace: judge with the operators who did all trials, too",
             named.join(", ")
         )
     })
 }
-
-/// So many are named.
-const MOST_NAMED: usize = 10;
 
 /// What was chosen or could not be known.
 fn notes(figures: &PerformanceFigures, outputs: &Outputs) -> Vec<String> {

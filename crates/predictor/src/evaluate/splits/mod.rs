@@ -109,29 +109,36 @@ pub fn compare_splits<'a>(data: &Dataset, inputs: &'a [usize], ways: &[By], meth
     };
     let mut all = vec![own(MEAN, baseline::mean), own(NEAREST, baseline::nearest)];
     all.extend(methods);
-    let mut done: Vec<(Vec<Vec<usize>>, Rc<Vec<Held>>, Split)> = Vec::new();
+    let mut done: Vec<Done> = Vec::new();
     for &by in ways {
         let one = match folds(data, by) {
             Err(why) => {
                 let split = Split { by, parts: 0, same_as: None, methods: Vec::new(), fault: Some(why.to_string()) };
-                (Vec::new(), Rc::default(), split)
+                Done { parts: Vec::new(), held: Rc::default(), split }
             }
             Ok(folds) => {
                 let parts: Vec<Vec<usize>> = folds.into_iter().map(|fold| fold.test).collect();
-                let same = || done.iter().filter(|(others, _, _)| *others == parts);
-                let held = same().next().map(|(_, held, _)| Rc::clone(held));
+                let same = || done.iter().filter(|other| other.parts == parts);
+                let held = same().next().map(|other| Rc::clone(&other.held));
                 let held =
                     held.unwrap_or_else(|| Rc::new(all.iter().map(|method| held_out(data, by, method)).collect()));
-                let alike = same().find(|(_, _, split)| split.by.counts_parts() == by.counts_parts());
-                let same_as = alike.map(|(_, _, split)| split.by);
+                let same_as =
+                    same().map(|other| other.split.by).find(|other| other.counts_parts() == by.counts_parts());
                 let methods = scores(data, by, &parts, &all, &held);
                 let count = parts.len();
-                (parts, held, Split { by, parts: count, same_as, methods, fault: None })
+                Done { parts, held, split: Split { by, parts: count, same_as, methods, fault: None } }
             }
         };
         done.push(one);
     }
-    done.into_iter().map(|(_, _, split)| split).collect()
+    done.into_iter().map(|one| one.split).collect()
+}
+
+/// A split with its parts and what came of each method, which a later one of the same parts shares.
+struct Done {
+    parts: Vec<Vec<usize>>,
+    held: Rc<Vec<Held>>,
+    split: Split,
 }
 
 /// What came of a method with parts held out, or why nothing did.
@@ -153,7 +160,7 @@ fn scores(data: &Dataset, by: By, parts: &[Vec<usize>], methods: &[Method<'_>], 
                     true => units::interval(parts, errors, baseline),
                     false => Blocks::of(data, errors, baseline).interval(),
                 };
-                score(method, found, [&errors, baseline], &interval)
+                score(method, found, [&errors, baseline], interval)
             }
             Err(why) => {
                 MethodScore { method: method.name.clone(), rows: 0, targets: Vec::new(), fault: Some(why.clone()) }
@@ -168,7 +175,7 @@ fn score(
     method: &Method<'_>,
     found: &CrossValidation,
     [errors, mean]: [&Array2<f64>; 2],
-    interval: &dyn Fn(&[f64], &[f64]) -> Option<([f64; 2], bool)>,
+    interval: impl Fn(&[f64], &[f64]) -> Option<units::Sure>,
 ) -> MethodScore {
     let target = |(k, one): (usize, &super::TargetScore)| {
         let interval = interval(&errors.column(k).to_vec(), &mean.column(k).to_vec());

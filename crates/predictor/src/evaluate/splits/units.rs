@@ -18,9 +18,12 @@ pub const FEWEST_UNITS: usize = 3;
 /// The quantile of Student's t at either end.
 const QUANTILE: f64 = 0.975;
 
-/// The RMSE's 95 % interval, and whether the errors are surely below the baseline's (97.5 %); rows of which either
-/// isn't finite do not count. None of fewer than [`FEWEST_UNITS`] parts, or where a part has no error at all.
-pub(super) fn interval(parts: &[Vec<usize>], errors: &[f64], baseline: &[f64]) -> Option<([f64; 2], bool)> {
+/// An RMSE's 95 % interval, and whether the errors are surely below the baseline's (97.5 %).
+pub(super) type Sure = ([f64; 2], bool);
+
+/// How sure an RMSE is; rows of which either error isn't finite do not count. None of fewer than [`FEWEST_UNITS`] parts,
+/// or where a part has no error at all.
+pub(super) fn interval(parts: &[Vec<usize>], errors: &[f64], baseline: &[f64]) -> Option<Sure> {
     let sums = |rows: &Vec<usize>| {
         let mut sums = [0.0; 3];
         for &row in rows.iter().filter(|&&row| errors[row].is_finite() && baseline[row].is_finite()) {
