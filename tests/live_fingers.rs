@@ -1,8 +1,8 @@
 //! Sessions of several devices: fingers on one clock, a force transducer beside the photodiodes.
 
 use std::fmt::Write as _;
-use std::io::Write;
-use std::net::TcpListener;
+use std::io::{self, Write};
+use std::net::{TcpListener, TcpStream};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -142,42 +142,69 @@ fn whose_a_source_is_has_to_be_said_and_to_be_known() {
     assert_eq!(live.stdout.lines().count(), 51);
 }
 
-/// A device that sends `name` and its own clock, which began long before, for `seconds`; the value is the time since
-/// `start`.
-fn device(start: Instant, name: &'static str, ahead_s: f64, every: Duration, seconds: f64) -> (String, JoinHandle<()>) {
+/// A device that sends the names of its columns and then `rows`, until the program has gone.
+fn device(
+    names: String,
+    rows: impl FnOnce(&mut TcpStream) -> io::Result<()> + Send + 'static,
+) -> (String, JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let source = format!("tcp:{}?once", listener.local_addr().expect("an address"));
     let sends = std::thread::spawn(move || {
         let (mut stream, _) = listener.accept().expect("the program comes");
         stream.set_nodelay(true).expect("a socket");
-        stream.write_all(format!("time_s,{name}\n").as_bytes()).expect("the program reads");
+        stream.write_all(format!("{names}\n").as_bytes()).expect("the program reads");
+        let _gone = rows(&mut stream);
+    });
+    (source, sends)
+}
+
+/// .. of which `name` is the time since `start`, and which has a clock of its own that began long before, for `seconds`.
+fn clocked(start: Instant, name: &str, ahead_s: f64, every: Duration, seconds: f64) -> (String, JoinHandle<()>) {
+    device(format!("time_s,{name}"), move |stream| {
         let from = Instant::now();
         while from.elapsed().as_secs_f64() < seconds {
             let t_s = start.elapsed().as_secs_f64();
-            if stream.write_all(format!("{:.6},{t_s:.6}\n", t_s + ahead_s).as_bytes()).is_err() {
-                return;
-            }
+            stream.write_all(format!("{:.6},{t_s:.6}\n", t_s + ahead_s).as_bytes())?;
             std::thread::sleep(every);
         }
-    });
-    (source, sends)
+        Ok(())
+    })
+}
+
+/// .. of which `name` is the time since `start`, without a clock, in bursts of `rows`.
+fn bursts(start: Instant, name: &str, rows: u32, every: Duration, count: u32) -> (String, JoinHandle<()>) {
+    device(name.to_owned(), move |stream| {
+        let mut from_s = start.elapsed().as_secs_f64();
+        for _ in 0..count {
+            std::thread::sleep(every);
+            let to_s = start.elapsed().as_secs_f64();
+            let made = |k: u32| from_s + (to_s - from_s) * f64::from(k + 1) / f64::from(rows);
+            stream.write_all((0..rows).map(|k| format!("{:.6}\n", made(k))).collect::<String>().as_bytes())?;
+            from_s = to_s;
+        }
+        Ok(())
+    })
+}
+
+/// How far the forces of a recording are from the rows that they stand in, seconds, in order.
+fn off_s(text: &str) -> Vec<f64> {
+    let number = |cell: &str| cell.parse::<f64>().unwrap();
+    let rows = cells(text).into_iter().filter(|row| !row[2].is_empty());
+    let mut off_s: Vec<f64> = rows.map(|row| (number(row[1]) - number(row[2])).abs()).collect();
+    off_s.sort_by(f64::total_cmp);
+    off_s
 }
 
 #[test]
 fn devices_with_clocks_of_their_own_are_brought_together() {
     let dir = desk();
     let start = Instant::now();
-    let (sensor, one) = device(start, "P1", 5.0, Duration::from_millis(5), 2.0);
-    let (force, other) = device(start, "Fz_N", 9000.0, Duration::from_millis(8), 2.3);
+    let (sensor, one) = clocked(start, "P1", 5.0, Duration::from_millis(5), 2.0);
+    let (force, other) = clocked(start, "Fz_N", 9000.0, Duration::from_millis(8), 2.3);
     dir.lunula(&["record", "--source", &sensor, "--force", &force, "--out", "r.csv", "-q"]).expect(0);
     one.join().and_then(|()| other.join()).expect("the devices");
     let text = dir.text("r.csv");
-    let mut off_s: Vec<f64> = cells(&text)
-        .iter()
-        .filter(|row| !row[2].is_empty())
-        .map(|row| (row[1].parse::<f64>().unwrap() - row[2].parse::<f64>().unwrap()).abs())
-        .collect();
-    off_s.sort_by(f64::total_cmp);
+    let off_s = off_s(&text);
     // Before the clocks are fitted a row is where it arrived; how late that is, is the machine's.
     assert!(off_s.len() > 100, "{} rows with a force", off_s.len());
     assert!(off_s[off_s.len() / 2] <= 0.005, "{} s in median", off_s[off_s.len() / 2]);
@@ -189,46 +216,17 @@ fn devices_with_clocks_of_their_own_are_brought_together() {
     );
 }
 
-/// A device that sends the time since `start`, without a clock of its own, in bursts.
-fn bursts(start: Instant, name: &'static str, rows: u32, every: Duration, count: u32) -> (String, JoinHandle<()>) {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let source = format!("tcp:{}?once", listener.local_addr().expect("an address"));
-    let sends = std::thread::spawn(move || {
-        let (mut stream, _) = listener.accept().expect("the program comes");
-        stream.set_nodelay(true).expect("a socket");
-        stream.write_all(format!("{name}\n").as_bytes()).expect("the program reads");
-        let mut from_s = start.elapsed().as_secs_f64();
-        for _ in 0..count {
-            std::thread::sleep(every);
-            let to_s = start.elapsed().as_secs_f64();
-            let made = |k: u32| from_s + (to_s - from_s) * f64::from(k + 1) / f64::from(rows);
-            let text: String = (0..rows).map(|k| format!("{:.6}\n", made(k))).collect();
-            if stream.write_all(text.as_bytes()).is_err() {
-                return;
-            }
-            from_s = to_s;
-        }
-    });
-    (source, sends)
-}
-
 #[test]
 fn forces_that_come_in_bursts_are_not_a_burst_late() {
     for (rows, every_ms, is_said) in [(20, 100, true), (1, 5, false)] {
         let dir = desk();
         let start = Instant::now();
-        let (sensor, one) = device(start, "P1", 5.0, Duration::from_millis(5), 2.0);
+        let (sensor, one) = clocked(start, "P1", 5.0, Duration::from_millis(5), 2.0);
         let (force, other) = bursts(start, "Fz_N", rows, Duration::from_millis(every_ms), 2400 / every_ms as u32);
         let said = dir.lunula(&["record", "--source", &sensor, "--force", &force, "--out", "r.csv"]).expect(0);
         one.join().and_then(|()| other.join()).expect("the devices");
         let said = if is_said { said.says("come in bursts") } else { said.never_says("come in bursts") };
-        let text = dir.text("r.csv");
-        let mut off_s: Vec<f64> = cells(&text)
-            .iter()
-            .filter(|row| !row[2].is_empty())
-            .map(|row| (row[1].parse::<f64>().unwrap() - row[2].parse::<f64>().unwrap()).abs())
-            .collect();
-        off_s.sort_by(f64::total_cmp);
+        let off_s = off_s(&dir.text("r.csv"));
         // Of bursts it was half of one, 50 ms and more.
         assert!(off_s.len() > 100 && off_s[off_s.len() / 2] <= 0.01, "{rows}: {off_s:?} {}", said.stderr);
     }
@@ -238,8 +236,8 @@ fn forces_that_come_in_bursts_are_not_a_burst_late() {
 fn fingers_of_two_devices_are_on_one_clock_and_one_that_ends_stops_nobody() {
     let dir = desk();
     let start = Instant::now();
-    let (index, one) = device(start, "P1", 5.0, Duration::from_millis(5), 1.0);
-    let (middle, other) = device(start, "P1", 9000.0, Duration::from_millis(5), 2.0);
+    let (index, one) = clocked(start, "P1", 5.0, Duration::from_millis(5), 1.0);
+    let (middle, other) = clocked(start, "P1", 9000.0, Duration::from_millis(5), 2.0);
     let sources = ["--source", &format!("index={index}"), "--source", &format!("middle={middle}")];
     dir.lunula(&[&["record"], &sources[..], &["--out", "r.csv", "-q"]].concat()).expect(0);
     one.join().and_then(|()| other.join()).expect("the devices");
