@@ -211,6 +211,18 @@ fn spoilt_rows_cost_themselves_and_are_counted() {
 }
 
 #[test]
+fn a_time_that_is_not_read_is_named() {
+    let dir = desk();
+    for (names, is_said) in [("ms,P1", true), ("time_ms,P1", false), ("P1", false)] {
+        let mut running = started(&dir, "live --source - --model m.json");
+        running.write(&format!("{names}\n{}", if names == "P1" { "1\n1.5\n" } else { "0,1\n10,1.5\n" }));
+        let (code, lines, said) = running.end();
+        assert_eq!((code, lines.len()), (0, 3), "{said}");
+        assert_eq!(said.contains("where one of ms is the time"), is_said, "{names}: {said}");
+    }
+}
+
+#[test]
 fn silence_lets_go_in_time_and_what_still_presses_does_not_press() {
     let dir = desk();
     let mut running = started(&dir, "live --source - --model m.json --switch sw.toml --events e.jsonl");

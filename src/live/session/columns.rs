@@ -82,6 +82,13 @@ impl StreamColumns {
             };
             columns.meaning.uses.push(what);
         }
+        if !columns.time && !columns.passed_over.is_empty() {
+            columns.notes.push(format!(
+                "no column is read as the time, and rows have that of their arrival; where one of {} is the time, name \
+                 it with --columns time_s=NAME, and its unit with --time-unit",
+                columns.passed_over.join(", ")
+            ));
+        }
         Ok(columns)
     }
 
