@@ -158,7 +158,8 @@ fn device(
     (source, sends)
 }
 
-/// .. of which `name` is the time since `start`, and which has a clock of its own that began long before, for `seconds`.
+/// .. of which `name` is the time since `start`, and which has a clock of its own that began long before, for
+/// `seconds`.
 fn clocked(start: Instant, name: &str, ahead_s: f64, every: Duration, seconds: f64) -> (String, JoinHandle<()>) {
     device(format!("time_s,{name}"), move |stream| {
         let from = Instant::now();

@@ -21,8 +21,8 @@ const QUANTILE: f64 = 0.975;
 /// An RMSE's 95 % interval, and whether the errors are surely below the baseline's (97.5 %).
 pub(super) type Sure = ([f64; 2], bool);
 
-/// How sure an RMSE is; rows of which either error isn't finite do not count. None of fewer than [`FEWEST_UNITS`] parts,
-/// or where a part has no error at all.
+/// How sure an RMSE is; rows of which either error isn't finite do not count. None of fewer than [`FEWEST_UNITS`]
+/// parts, or where a part has no error at all.
 pub(super) fn interval(parts: &[Vec<usize>], errors: &[f64], baseline: &[f64]) -> Option<Sure> {
     let sums = |rows: &Vec<usize>| {
         let mut sums = [0.0; 3];
