@@ -14,12 +14,10 @@ use crate::median::median_of;
 /// So many rows make a fault; fewer are named as [glitches](super::doubts::glitches).
 const ROWS: usize = 3;
 /// A leap is so many times as long as 90 of 100 steps that are any, and has this share of the range; where it comes
-/// back to, it has left, within this share of the leap.
+/// back to, it has left, within this share of the leap; a finger that taps comes from rest so nearly.
 const STEPS: f64 = 8.0;
 const RANGE: f64 = 0.1;
 const BACK: f64 = 0.2;
-/// A force that begins and ends so near to its middle, of its range, is one of a finger that rests (assumed).
-const RESTS: f64 = 0.1;
 /// A tap goes no further than other presses, but for this share of their range (assumed).
 const TAPS: f64 = 0.5;
 /// Below so many steps nothing is said.
@@ -59,9 +57,11 @@ pub(super) fn leaps(name: &str, values: &[f64], ends: [f64; 2]) -> Option<Leaps>
     let is_force = matches!(Role::of(name), Some(Role::Force(_)));
     let are_taps = || {
         let Some(rest) = median_of(values.iter().copied().filter(|value| value.is_finite())) else { return false };
-        let rests = |value: f64| (value - rest).abs() <= RESTS * range;
         let is_no_further = |value: f64| (ends[0] - TAPS * range..=ends[1] + TAPS * range).contains(&value);
-        let is_tap = |row: &[f64]| rests(row[0]) && rests(row[2]) && is_no_further(row[1]);
+        let is_tap = |row: &[f64]| {
+            let rests = |value: f64| (value - rest).abs() <= BACK * (row[1] - rest).abs();
+            rests(row[0]) && rests(row[2]) && is_no_further(row[1])
+        };
         2 * found.there <= found.rows && alone().all(is_tap)
     };
     (found.rows >= ROWS && !(is_force && are_taps())).then_some(found)
