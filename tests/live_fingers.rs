@@ -189,7 +189,7 @@ fn bursts(start: Instant, name: &str, rows: u32, every: Duration, count: u32) ->
 
 /// How far the forces of a recording are from the rows that they stand in, seconds, in order.
 fn off_s(text: &str) -> Vec<f64> {
-    let number = |cell: &str| cell.parse::<f64>().unwrap();
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
     let rows = cells(text).into_iter().filter(|row| !row[2].is_empty());
     let mut off_s: Vec<f64> = rows.map(|row| (number(row[1]) - number(row[2])).abs()).collect();
     off_s.sort_by(f64::total_cmp);
