@@ -63,7 +63,12 @@ pub(super) fn draw_methods(figures: &PerformanceFigures, png: &Path, svg: &Path)
     let items = items.flat_map(|(k, method)| method_items(method, k, ASIDE * (k as f64 - 0.5 * (many - 1) as f64)));
     let title = match figures.operators.len() {
         1 => "One operator".to_owned(),
-        operators => format!("Mean of {operators} operators, with standard deviation"),
+        operators if figures.methods.iter().all(|method| method.not_done() == 0) => {
+            format!("Mean of {operators} operators, with standard deviation")
+        }
+        operators => {
+            format!("Mean and standard deviation of who did each trial, and the curve of all {operators} operators")
+        }
     };
     let numbers = figures.methods.iter().flat_map(|method| method.trials.iter().map(|of| of.trial)).collect();
     draw_charts(&[chart(title, &numbers, items.collect(), HEIGHT)], WIDTH, png, svg)

@@ -324,7 +324,7 @@ fn notes(figures: &PerformanceFigures, outputs: &Outputs) -> Vec<String> {
     }
     for method in &figures.methods {
         let fitted = &method.fitted;
-        let missing: usize = method.trials.iter().map(|of| method.operators - of.over_operators.n).sum();
+        let missing = method.not_done();
         if missing > 0 && fitted.better.is_some() {
             notes.push(format!(
                 "{}: {missing} of {} trials were not done; the curve is of all operators, at the pace that each had in \

@@ -47,6 +47,13 @@ pub struct MethodFigures {
     pub levels_off: Option<Level>,
 }
 
+impl MethodFigures {
+    /// Trials that an operator did not do and others did, of all operators.
+    pub(super) fn not_done(&self) -> usize {
+        self.trials.iter().map(|of| self.operators - of.over_operators.n).sum()
+    }
+}
+
 /// The mean over operators of one trial.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct TrialMean {
