@@ -259,13 +259,19 @@ fn cumulative(trials: &Trials, course: &Course) -> Option<String> {
     })
 }
 
-/// Trials of a method that go on where those of another end: learning would begin in the middle.
-fn counted_on(trials: &Trials) -> Option<String> {
-    let mut counts: BTreeMap<(usize, usize), [u32; 2]> = BTreeMap::new();
+/// The first and the last trial of each operator with each method.
+fn ends(trials: &Trials) -> BTreeMap<(usize, usize), [u32; 2]> {
+    let mut all: BTreeMap<(usize, usize), [u32; 2]> = BTreeMap::new();
     for row in &trials.rows {
-        let ends = counts.entry((row.operator, row.method)).or_insert([row.trial; 2]);
+        let ends = all.entry((row.operator, row.method)).or_insert([row.trial; 2]);
         *ends = [ends[0].min(row.trial), ends[1].max(row.trial)];
     }
+    all
+}
+
+/// Trials of a method that go on where those of another end: learning would begin in the middle.
+fn counted_on(trials: &Trials) -> Option<String> {
+    let counts = ends(trials);
     let ended = |operator: usize, last: u32| counts.iter().any(|((o, _), ends)| *o == operator && ends[1] == last);
     let goes_on = |((operator, _), ends): &(&(usize, usize), &[u32; 2])| ends[0] > 1 && ended(*operator, ends[0] - 1);
     let all: Vec<_> = counts.iter().filter(goes_on).collect();
@@ -286,22 +292,16 @@ const MOST_NAMED: usize = 10;
 
 /// Operators who did not go on as long as others did with a method: those who stop are seldom like those who stay.
 fn ended_early(trials: &Trials) -> Option<String> {
-    let mut ends: BTreeMap<(usize, usize), u32> = BTreeMap::new();
-    let mut lasts: BTreeMap<usize, u32> = BTreeMap::new();
-    for row in &trials.rows {
-        let end = ends.entry((row.method, row.operator)).or_default();
-        *end = row.trial.max(*end);
-        let last = lasts.entry(row.method).or_default();
-        *last = row.trial.max(*last);
+    let ends = ends(trials);
+    let mut named = Vec::new();
+    for (method, name) in trials.methods.iter().enumerate() {
+        let of_method = || ends.iter().filter(|((_, of), _)| *of == method);
+        let last = of_method().map(|(_, ends)| ends[1]).max().unwrap_or(0);
+        let early = of_method().filter(|(_, ends)| ends[1] + ENDED_EARLY <= last);
+        named.extend(early.map(|((operator, _), ends)| {
+            format!("{} after trial {} of {last} with {name}", trials.operators[*operator], ends[1])
+        }));
     }
-    let early = ends.iter().filter(|((method, _), end)| **end + ENDED_EARLY <= lasts[method]);
-    let named = early.map(|((method, operator), end)| {
-        format!(
-            "{} after trial {end} of {} with {}",
-            trials.operators[*operator], lasts[method], trials.methods[*method]
-        )
-    });
-    let mut named: Vec<String> = named.collect();
     let more = named.len().saturating_sub(MOST_NAMED);
     named.truncate(MOST_NAMED);
     named.extend((more > 0).then(|| format!("{more} more")));
