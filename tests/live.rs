@@ -158,6 +158,28 @@ fn a_recording_makes_its_folder_and_where_none_can_be_nothing_begins() {
 }
 
 #[test]
+fn two_do_not_record_into_one_file() {
+    let dir = desk();
+    dir.write("1.csv", recording(1.0));
+    for out in ["r.csv", "r.parquet"] {
+        let mut first = start(&dir, &["record", "--source", "-", "--out", out]);
+        first.write("time_s,P1\n0,1\n0.01,2\n");
+        let grows = dir.path(if out == "r.csv" { "r.csv" } else { "r.parquet.csv" });
+        let text = || std::fs::read_to_string(&grows).unwrap_or_default();
+        while text().lines().count() < 3 {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let second = dir.lunula(&["record", "--source", "1.csv", "--out", out, "--replace"]).expect(2);
+        second.says("another program is recording into it");
+        assert_eq!(text(), "time_s,P1\n0,1\n0.01,2\n");
+        first.child.kill().expect("our own child");
+        first.child.wait().expect("a child");
+        // Who has ended, however, keeps no one out.
+        dir.lunula(&["record", "--source", "1.csv", "--out", out, "--replace"]).expect(0);
+    }
+}
+
+#[test]
 fn what_lies_behind_the_seconds_is_not_said_of_them() {
     let dir = desk();
     let rows: String =

@@ -9,7 +9,7 @@ pub(crate) mod disk;
 mod hidden;
 mod staging;
 
-use std::fs;
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -127,6 +127,33 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     }
     note_placed(folder);
     Ok(())
+}
+
+/// Makes a file that grows in its place, and empties it where it is there and to be replaced. It is locked while it is
+/// open: a second program can't write into it.
+///
+/// # Errors
+/// It can't be made, is there and not to be replaced, or another program writes into it.
+pub(crate) fn create_growing(path: &Path, replace: bool) -> io::Result<File> {
+    fs::create_dir_all(folder_of(path))?;
+    let mut options = OpenOptions::new();
+    options.write(true).create(replace).create_new(!replace);
+    let file = options.open(path)?;
+    if is_taken(&file) {
+        return Err(io::Error::other("another program is writing it"));
+    }
+    // A pipe or a device holds nothing.
+    if file.metadata()?.is_file() {
+        file.set_len(0)?;
+    }
+    Ok(file)
+}
+
+/// Whether another program writes into a file that grows. If not it is this one's until it is closed, where the file
+/// system knows locks.
+pub(crate) fn is_taken(file: &File) -> bool {
+    let is_file = file.metadata().is_ok_and(|data| data.is_file());
+    is_file && matches!(file.try_lock(), Err(TryLockError::WouldBlock))
 }
 
 /// The folder that a file stands in, or is to.

@@ -21,6 +21,11 @@ pub enum LiveError {
         .0.display()
     )]
     Exists(PathBuf),
+    #[error(
+        "{}: another program is recording into it; end that one first, or choose another name",
+        .0.display()
+    )]
+    Taken(PathBuf),
     #[error("{}: can't be written ({why}); what was recorded until then is kept", path.display())]
     Write { path: PathBuf, why: io::Error },
     #[error("standard output: cannot be written ({0}); make room, or send it elsewhere")]

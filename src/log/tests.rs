@@ -302,6 +302,26 @@ fn a_clock_that_was_reset_is_an_error_that_says_where_and_pieces_are_chosen() {
 }
 
 #[test]
+fn microseconds_of_32_bits_go_on_after_their_end() {
+    let of = |stamps: Vec<u64>| {
+        let rows: String = stamps.iter().enumerate().map(|(k, stamp)| format!("{stamp},{k}.5\n")).collect();
+        format!("time_us,P1\n{rows}")
+    };
+    let began = |first: u64| (0..500_u64).map(move |k| (first + k * 5000) % (1 << 32));
+    // Rows swapped at the end, too.
+    let mut stamps: Vec<u64> = began((1 << 32) - 1_000_000).collect();
+    stamps.swap(199, 200);
+    let log = good(&of(stamps));
+    assert!((0..500).all(|k| (log.time_s[k] - (4293.967_296 + k as f64 * 0.005)).abs() <= 1e-9));
+    assert!(noted(&log, &["32 bits of microseconds began again", "line 201"]), "{:?}", log.notes);
+    // A clock that starts again elsewhere, or goes on elsewhere.
+    for (first, second) in [((1 << 32) - 9_000_000, 0), ((1 << 32) - 1_000_000, 3_000_000)] {
+        let error = error_of(&of(began(first).take(200).chain(began(second).take(100)).collect()));
+        assert!(error.contains("log.csv:202: time falls back"), "{error}");
+    }
+}
+
+#[test]
 fn repeated_stamps_and_gaps_are_told() {
     let log = good(&of_times([0.0, 0.1, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]));
     assert_eq!(log.time_s.len(), 10);

@@ -275,7 +275,8 @@ fn unit(stream: &StreamCertificate) -> Option<String> {
     if stream.times != Some(StreamTimes::Device) {
         return None;
     }
-    if counts.doubtful > counts.rows && counts.doubtful >= STEPS {
+    let unfit = counts.doubtful + counts.set_back;
+    if unfit >= STEPS && 2 * unfit > counts.rows {
         let what = "the times of most rows do not fit to their arrival: are they in seconds? Write them in seconds, or \
                     say with --time-unit what they are in";
         return Some(what.to_owned());
@@ -307,7 +308,11 @@ fn losses(report: &SessionReport) -> Vec<String> {
             (counts.lost_by_time, "never came or came late (estimated from gaps in time)"),
             (counts.disorder, "came behind later ones and are left out"),
             (counts.duplicates, "came twice (by their counter) and are counted once"),
-            (counts.doubtful, "have a time that does not fit to those before and are left out"),
+            (
+                counts.doubtful,
+                "have a time or a count that fits neither to the row before nor to the one behind (a digit \
+                               is damaged?) and are left out",
+            ),
         ] {
             if count > 0 {
                 warnings.push(format!("{whose}{count} {what} {how}"));
@@ -398,7 +403,8 @@ mod tests {
         assert!(doubted.starts_with("rows are 10 s apart") && doubted.contains("--time-unit"), "{doubted}");
         // A device whose clock runs a thousand times as fast as the host's.
         assert_eq!(unit(&stream(rows(600, 0), 10.0, Some(-999_000.0))), Some(doubted));
-        let arrival = unit(&stream(rows(1, 599), 20.0, None)).unwrap();
+        let set_back = RowCounts { rows: 600, set_back: 599, ..RowCounts::default() };
+        let arrival = unit(&stream(set_back, 20.0, None)).unwrap();
         assert!(arrival.starts_with("the times of most rows do not fit"), "{arrival}");
         for fine in [
             stream(rows(600, 0), 0.01, None),

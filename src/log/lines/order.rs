@@ -5,7 +5,8 @@
 //! A run of rows that are late (behind the latest stamp so far) is a small disorder, and sorted, where it has at most
 //! [`LATE_ROWS`] rows, reaches back by at most as many steps, and takes a hole that is there for it: sorted, the rows
 //! there are about as dense as everywhere, and those after them are where they would have been. Anything else that
-//! falls back is a clock that was reset, and so is a leap of more than a day.
+//! falls back is a clock that was reset, and so is a leap of more than a day. Where 32 bits of microseconds begin again
+//! time goes on.
 
 use std::num::NonZeroUsize;
 
@@ -25,6 +26,9 @@ const GAP_STEPS: f64 = 5.0;
 const STAYS: f64 = 0.75;
 const STAYS_SES: f64 = 12.0;
 
+/// After so many seconds 32 bits of microseconds begin again, as those of an Arduino do.
+const TURN_S: f64 = 4294.967_296;
+
 /// Orders the rows by time.
 pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Result<Log, LogError> {
     let read = raw.time_s.len();
@@ -43,6 +47,7 @@ pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Resul
     if rows.is_empty() {
         return Err(raw.no_rows());
     }
+    unwrap(&mut raw, &rows);
     rows = one_piece(&mut raw, rows, piece)?;
     sort(&mut raw, &mut rows);
     let time_s: Vec<f64> = rows.iter().map(|&row| raw.time_s[row]).collect();
@@ -68,6 +73,31 @@ pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Resul
     }
     let led = raw.led.map(|led| rows.iter().map(|&row| led[row] == Some(true)).collect());
     Ok(Log { path: raw.path, time_s, midnight_s, led, photodiodes, forces, notes: raw.notes })
+}
+
+/// Lets time go on where 32 bits of microseconds begin again: it falls back by a turn, but for at most as many steps as
+/// late rows reach back.
+fn unwrap(raw: &mut Raw, rows: &[usize]) {
+    let time_s: Vec<f64> = rows.iter().map(|&row| raw.time_s[row]).collect();
+    let Some(step_s) = median_step_s(&time_s) else { return };
+    let near_s = LATE_ROWS as f64 * step_s;
+    let (mut turns, mut first) = (0.0, None);
+    for k in 1..rows.len() {
+        let on_s = time_s[k] - time_s[k - 1];
+        if on_s < 0.0 && (on_s + TURN_S).abs() <= near_s {
+            turns += 1.0;
+            first.get_or_insert(rows[k]);
+        } else if turns > 0.0 && (on_s - TURN_S).abs() <= near_s {
+            turns -= 1.0;
+        }
+        raw.time_s[rows[k]] += turns * TURN_S;
+    }
+    if let Some(first) = first {
+        raw.notes.push(format!(
+            "the clock's 32 bits of microseconds began again after 71.6 minutes, at {}; time goes on from there",
+            raw.word.at(raw.places[first])
+        ));
+    }
 }
 
 /// The rows of the piece that is asked for; of all where the clock was not reset.

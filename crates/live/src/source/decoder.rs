@@ -150,4 +150,12 @@ impl Decoder {
             Self::Table(table) => &table.decoded,
         }
     }
+
+    pub(in crate::source) fn decoded_mut(&mut self) -> &mut Decoded {
+        match self {
+            Self::Lines(lines) => &mut lines.decoded,
+            Self::Frames(frames) => &mut frames.decoded,
+            Self::Table(table) => &mut table.decoded,
+        }
+    }
 }

@@ -25,7 +25,7 @@ pub enum Count {
 pub struct Counter {
     /// After which it begins again, where they are known.
     bits: Option<u32>,
-    last: Option<u64>,
+    pub(crate) last: Option<u64>,
     /// Of the 64 counts up to the latest, which came; bit 0 is the latest.
     came: u64,
 }
@@ -106,7 +106,7 @@ impl Counter {
 }
 
 /// Whether going on so many counts fits into the time for `rows`; a clock may be late by a few.
-fn fits(ahead: u64, rows: Option<f64>) -> bool {
+pub(super) fn fits(ahead: u64, rows: Option<f64>) -> bool {
     rows.is_none_or(|rows| (ahead as f64 - rows).abs() <= LATE_ROWS as f64 + rows / 2.0)
 }
 

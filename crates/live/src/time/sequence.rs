@@ -4,11 +4,11 @@
 //! that comes twice or late is dropped and counted: what was decided already is not decided again. Nothing is
 //! interpolated.
 //!
-//! A clock that leaps, on a link that may damage rows, is believed when a second row agrees with it; the first is
-//! dropped as doubtful.
+//! A clock or counter that leaps is believed where the next row agrees with it; otherwise the row is damaged, and is
+//! dropped as doubtful. Who takes rows holds back the one that is doubtful until then.
 
 use crate::time::arrivals::Arrivals;
-use crate::time::counter::{Count, Counter};
+use crate::time::counter::{Count, Counter, fits};
 use crate::time::period::Period;
 use crate::time::unwrap::{Expected, Reading, Unwrap};
 use crate::wire::{Meaning, Sample, Use};
@@ -22,7 +22,7 @@ const LATE_ROWS: u32 = 16;
 const AWAY_S: f64 = 10.0;
 const AWAY_PART: f64 = 0.01;
 
-/// A device's clock that goes on by this and twice what the host saw pass, or more, leaps, seconds (*assumed*: more
+/// A device's clock that goes on by this and twice what the host saw pass, or more, was set, seconds (*assumed*: more
 /// than a machine holds rows back).
 const LEAP_S: f64 = 10.0;
 
@@ -45,7 +45,8 @@ pub enum Verdict {
     Duplicate,
     /// Rows after it came already.
     Late,
-    /// Its time does not fit to the rows before it, and may be damaged.
+    /// Its time or count does not fit to the rows before it, and may be damaged: [`Sequence::settle`] says so by the
+    /// next row.
     Doubtful,
 }
 
@@ -74,7 +75,7 @@ pub struct RowCounts {
     pub duplicates: u64,
     /// Rows that came behind later ones and were dropped.
     pub disorder: u64,
-    /// Rows that were dropped since their time did not fit to those before.
+    /// Rows that were dropped since their time or count fitted neither to the row before nor to the one behind.
     pub doubtful: u64,
     /// How often the device's clock or counter began again.
     pub set_back: u64,
@@ -90,8 +91,10 @@ pub struct Sequence {
     counter: Counter,
     counted: bool,
     link: Link,
-    /// A stamp that was not believed, and when it came.
-    doubt: Option<(f64, u64)>,
+    /// What is not believed of the latest sample.
+    doubt: Option<Doubt>,
+    /// The next sample is the doubtful one, and the one behind it agrees with it.
+    trusted: bool,
     period: Period,
     /// Of rows without a clock.
     arrivals: Arrivals,
@@ -125,6 +128,7 @@ impl Sequence {
             counted: meaning.uses.contains(&Use::Counter),
             link,
             doubt: None,
+            trusted: false,
             period: Period::default(),
             arrivals: Arrivals::default(),
             shift_s: 0.0,
@@ -138,11 +142,13 @@ impl Sequence {
 
     /// What comes next begins a recording: the device started again.
     pub fn begin(&mut self) {
+        self.drop_doubtful();
         self.begins = true;
     }
 
     /// What comes next begins a recording: the source was away, and the device may have started again meanwhile.
     pub fn come_back(&mut self) {
+        self.drop_doubtful();
         (self.begins, self.away) = (true, true);
     }
 
@@ -190,6 +196,22 @@ impl Sequence {
         }
     }
 
+    /// Whether the sample behind a doubtful one agrees with it, so that the doubtful one is right and is to be taken
+    /// again, first; otherwise it is dropped.
+    pub fn settle(&mut self, next: &Sample) -> bool {
+        self.trusted = self.doubt.is_some_and(|doubt| doubt.is_confirmed_by(next));
+        if self.trusted {
+            self.doubt = None;
+        }
+        self.drop_doubtful();
+        self.trusted
+    }
+
+    /// Nothing comes that could agree with a doubtful sample.
+    pub fn drop_doubtful(&mut self) {
+        self.counts.doubtful += u64::from(self.doubt.take().is_some());
+    }
+
     fn is_live(&self) -> bool {
         self.link != Link::Recording
     }
@@ -198,7 +220,7 @@ impl Sequence {
     pub fn take(&mut self, sample: &Sample, host_ns: u64) -> Verdict {
         let host_s = self.last.filter(|_| self.is_live()).map(|last| seconds(host_ns.saturating_sub(last.host_ns)));
         let expected = Expected { host_s, period_s: self.period_s() };
-        let before = self.clock.clone();
+        let (clock, counter) = (self.clock.clone(), self.counter.clone());
         let device_s = match &mut self.clock {
             None => Device::Host(self.arrivals.time_s(seconds(host_ns))),
             Some(_) if sample.time.is_nan() => Device::Unknown,
@@ -213,6 +235,7 @@ impl Sequence {
             Device::Back { .. } | Device::Unknown => None,
         });
         let away = std::mem::take(&mut self.away);
+        let believed = std::mem::take(&mut self.trusted) || self.begins;
         let elsewhere = |step_s: f64, host_s: f64| (step_s - host_s).abs() > AWAY_S + AWAY_PART * host_s;
         let restarted = match (device_s, step_s, host_s) {
             (Device::At(_), Some(step_s), Some(host_s)) => {
@@ -222,17 +245,29 @@ impl Sequence {
             (Device::Back { .. }, ..) => self.begins,
             _ => false,
         };
-        if restarted || self.is_set_back(device_s, sample.counter.is_some()) {
-            if self.is_doubtful(sample.time, host_ns) {
-                self.clock = before;
-                return Verdict::Doubtful;
-            }
+        let fell_back = self.fell_back(device_s, sample.counter.is_some());
+        let leaps = restarted || fell_back || matches!(device_s, Device::At(_)) && self.leaps(step_s, host_s);
+        if leaps && !believed {
+            let last = clock.as_ref().and_then(|(unwrap, _)| unwrap.last);
+            self.doubt = last.map(|last| Doubt { of: Doubted::Time, is: sample.time, was: last });
+            self.clock = clock;
+            return Verdict::Doubtful;
+        }
+        if restarted || fell_back || self.late_run >= LATE_ROWS && matches!(device_s, Device::Back { .. }) {
             return self.set_back(sample, host_ns, host_s);
         }
-        let lost = match self.count(sample, device_s, step_s.or(host_s)) {
+        let lost = match self.count(sample, device_s, step_s.or(host_s), believed) {
             Ok(lost) => lost,
             Err(Count::SetBack) if matches!(device_s, Device::At(_)) => {
-                return self.count_set_back(sample, (device_s, step_s), host_ns, before);
+                if !believed {
+                    let count = |count: Option<u64>| count.unwrap_or_default() as f64;
+                    self.doubt =
+                        Some(Doubt { of: Doubted::Count, is: count(sample.counter), was: count(counter.last) });
+                    (self.clock, self.counter) = (clock, counter);
+                    return Verdict::Doubtful;
+                }
+                self.begin_again(sample);
+                return self.on(device_s, step_s, 0, host_ns);
             }
             Err(Count::SetBack) => return self.set_back(sample, host_ns, host_s),
             Err(Count::Again) => {
@@ -248,27 +283,14 @@ impl Sequence {
         self.on(device_s, step_s, lost, host_ns)
     }
 
-    /// Whether a stamp that does not fit to those before it is not believed yet; it is where a recording begins, and
-    /// where the one before it fitted as little and both fit to each other.
-    fn is_doubtful(&mut self, stamp: f64, host_ns: u64) -> bool {
-        if self.link != Link::Device || self.begins {
-            return false;
-        }
-        let Some((_, per_second)) = &self.clock else { return false };
-        let step = |(before, before_ns): (f64, u64)| {
-            let host_s = seconds(host_ns.saturating_sub(before_ns));
-            ((stamp - before) / per_second, 2.0 * host_s + f64::from(LATE_ROWS) * self.period_s().unwrap_or(0.0))
-        };
-        if self.doubt.map(step).is_some_and(|(step_s, most_s)| step_s > 0.0 && step_s <= most_s) {
-            return false;
-        }
-        self.doubt = Some((stamp, host_ns));
-        self.counts.doubtful += 1;
-        true
+    /// Whether the clock goes on by more than lost rows, or what the host saw pass, explain.
+    fn leaps(&self, step_s: Option<f64>, host_s: Option<f64>) -> bool {
+        let rows_s = self.period_s().map_or(LEAP_S, |period_s| period_s * f64::from(LATE_ROWS));
+        step_s.is_some_and(|step_s| step_s > rows_s + 2.0 * host_s.unwrap_or(0.0))
     }
 
     /// Whether the clock fell back by more than a row that is late explains.
-    fn is_set_back(&self, device_s: Device, counted: bool) -> bool {
+    fn fell_back(&self, device_s: Device, counted: bool) -> bool {
         let Device::Back { by_s } = device_s else { return false };
         let most_s = match self.period_s() {
             Some(period_s) => period_s * f64::from(LATE_ROWS),
@@ -276,11 +298,12 @@ impl Sequence {
             None if counted => f64::INFINITY,
             None => 0.0,
         };
-        by_s > most_s || self.late_run >= LATE_ROWS
+        by_s > most_s
     }
 
     /// Rows lost before a sample, by its counter; without one, whether it is late by its time.
-    fn count(&mut self, sample: &Sample, device_s: Device, step_s: Option<f64>) -> Result<u64, Count> {
+    /// A count that goes on by more than fits into the time began again, where it is not `believed`.
+    fn count(&mut self, sample: &Sample, device_s: Device, step_s: Option<f64>, believed: bool) -> Result<u64, Count> {
         let Some(count) = sample.counter else {
             return if matches!(device_s, Device::Back { .. }) { Err(Count::Late) } else { Ok(0) };
         };
@@ -290,28 +313,14 @@ impl Sequence {
         let rows = rows.filter(|_| self.clock.is_some() || step_s.is_some_and(|step_s| step_s > HEAP_S));
         let still = back || self.clock.is_some() && step_s.is_some_and(|step_s| step_s <= 0.0);
         match self.counter.read(count, if back { Some(0.0) } else { rows }, still) {
+            // One of both times may be damaged.
+            Count::Next { .. } if back && self.period_s().is_some() => Err(Count::Late),
             Count::Next { .. } if back => Err(Count::SetBack),
             Count::Again | Count::Late if self.begins => Err(Count::SetBack),
+            Count::Next { lost } if !believed && self.clock.is_some() && !fits(lost + 1, rows) => Err(Count::SetBack),
             Count::Next { lost } => Ok(lost),
             other => Err(other),
         }
-    }
-
-    /// The counter began again and the clock went on; or one count is damaged, where the link may damage it.
-    fn count_set_back(
-        &mut self,
-        sample: &Sample,
-        (device_s, step_s): (Device, Option<f64>),
-        host_ns: u64,
-        before: Option<(Unwrap, f64)>,
-    ) -> Verdict {
-        if self.link == Link::Device && !self.begins && self.doubt.is_none() {
-            (self.clock, self.doubt) = (before, Some((sample.time, host_ns)));
-            self.counts.doubtful += 1;
-            return Verdict::Doubtful;
-        }
-        self.begin_again(sample);
-        self.on(device_s, step_s, 0, host_ns)
     }
 
     /// A recording begins, as the device's clock or counter began again.
@@ -343,7 +352,6 @@ impl Sequence {
     fn on(&mut self, device_s: Device, step_s: Option<f64>, lost: u64, host_ns: u64) -> Verdict {
         let begins = std::mem::take(&mut self.begins);
         self.late_run = 0;
-        self.doubt = None;
         self.counts.rows += 1;
         self.counts.lost += lost;
         let time_s = match device_s {
@@ -368,6 +376,32 @@ impl Sequence {
             self.counts.lost_by_time += ((step_s / period_s).round() as u64).saturating_sub(1);
         }
         self.period.push(step_s / (lost + 1) as f64, resolution_s);
+    }
+}
+
+/// What is not believed of a sample.
+#[derive(Debug, Clone, Copy)]
+struct Doubt {
+    of: Doubted,
+    is: f64,
+    /// That of the row before.
+    was: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Doubted {
+    Time,
+    Count,
+}
+
+impl Doubt {
+    /// Whether the next sample goes on from it, and not from the row before.
+    fn is_confirmed_by(&self, next: &Sample) -> bool {
+        let next = match self.of {
+            Doubted::Time => Some(next.time),
+            Doubted::Count => next.counter.map(|count| count as f64),
+        };
+        next.is_some_and(|next| next >= self.is && (self.is > self.was || next < self.was))
     }
 }
 

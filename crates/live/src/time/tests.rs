@@ -106,54 +106,98 @@ fn late_rows_are_dropped_and_seventeen_are_a_clock_that_was_set() {
     assert_eq!((counts.disorder, counts.set_back), (17, 1));
 }
 
+/// Takes samples as a stream does, which holds back those that are doubtful.
+#[derive(Default)]
+struct Taker {
+    held: Option<(Sample, u64)>,
+}
+
+impl Taker {
+    /// Takes a sample, which the one that was held back may come before.
+    fn take(&mut self, rows: &mut Sequence, next: Sample, host_ns: u64) -> Vec<(f64, u64, bool)> {
+        let first = self.held.take().filter(|_| rows.settle(&next));
+        let mut given = Vec::new();
+        for (sample, host_ns) in first.into_iter().chain([(next, host_ns)]) {
+            match rows.take(&sample, host_ns) {
+                Verdict::Doubtful => self.held = Some((sample, host_ns)),
+                verdict => given.push(row(verdict)),
+            }
+        }
+        given
+    }
+}
+
 #[test]
 fn a_clock_that_leaps_is_believed_when_a_second_row_agrees() {
-    for leap_ms in [-80.0, -4000.0, 5e6] {
-        let mut rows = clocked(true, Link::Device);
-        let mut host_ns = 0;
-        let mut take = |time: f64, n: u64| {
-            host_ns += MS;
-            rows.take(&sample(time, Some(n)), host_ns)
-        };
+    for (link, counted, leap_ms) in [Link::Device, Link::Pipe, Link::Recording]
+        .into_iter()
+        .flat_map(|link| [true, false].map(|counted| (link, counted)))
+        .flat_map(|(link, counted)| [-80.0, -4000.0, 100.0, 5000.0, 5e6].map(|leap_ms| (link, counted, leap_ms)))
+    {
+        let what = format!("{link:?} {counted} {leap_ms}");
+        let (mut rows, mut taker) = (clocked(counted, link), Taker::default());
+        let mut take = |time: f64, n: u64| taker.take(&mut rows, sample(time, counted.then_some(n)), n * MS);
         for n in 0..5000 {
-            row(take(n as f64, n));
+            take(n as f64, n);
         }
         // One row is damaged.
-        assert_eq!(take(5000.0 + leap_ms, 5000), Verdict::Doubtful, "{leap_ms}");
-        assert_eq!(row(take(5001.0, 5001)), (5.001, 1, false));
-        // The clock is set.
-        assert_eq!(take(5002.0 + leap_ms, 5002), Verdict::Doubtful);
-        let (time_s, lost, begins) = row(take(5003.0 + leap_ms, 5003));
-        assert!(begins && lost == 0 && (time_s - 5.003).abs() <= 1e-9, "{leap_ms}: {time_s}");
-        let (time_s, lost, begins) = row(take(5004.0 + leap_ms, 5004));
-        assert!(!begins && lost == 0 && (time_s - 5.004).abs() <= 1e-9, "{leap_ms}: {time_s}");
+        assert_eq!(take(5000.0 + leap_ms, 5000), [], "{what}");
+        assert_eq!(take(5001.0, 5001), [(5.001, u64::from(counted), false)], "{what}");
+        // The clock is set: none of its rows is lost.
+        assert_eq!(take(5002.0 + leap_ms, 5002), [], "{what}");
+        let given = take(5003.0 + leap_ms, 5003);
+        // Forwards a recording has a gap, and so has a device of which rows were lost; else its clock was set.
+        let gap_s = if leap_ms < 0.0 || link == Link::Device && leap_ms > 1e4 { 0.0 } else { leap_ms / 1e3 };
+        let set_back = gap_s == 0.0;
+        let expected = [(5.002 + gap_s, 0, set_back), (5.003 + gap_s, 0, false)];
+        assert_eq!(given.len(), 2, "{what}");
+        for (given, expected) in given.iter().zip(expected) {
+            assert!((given.0 - expected.0).abs() <= 1e-9, "{what}: {given:?}");
+            assert_eq!((given.1, given.2), (expected.1, expected.2), "{what}");
+        }
         let counts = rows.counts();
-        assert_eq!((counts.doubtful, counts.set_back, counts.lost), (2, 1, 1));
+        assert_eq!((counts.doubtful, counts.set_back, counts.rows), (1, u64::from(set_back), 5003), "{what}");
+    }
+}
+
+#[test]
+fn a_small_leap_of_one_row_costs_the_rows_that_it_hides() {
+    for (counted, leap_ms, late) in [(true, 5.0, 5), (false, 5.0, 5), (true, -5.0, 1), (false, -5.0, 1)] {
+        let mut rows = clocked(counted, Link::Pipe);
+        let verdicts: Vec<Verdict> = (0..1000_u32)
+            .map(|n| {
+                let time = f64::from(n) + if n == 500 { leap_ms } else { 0.0 };
+                rows.take(&sample(time, counted.then_some(n.into())), u64::from(n) * MS)
+            })
+            .collect();
+        let counts = rows.counts();
+        assert_eq!((counts.disorder, counts.set_back), (late - u64::from(leap_ms > 0.0), 0), "{counted} {leap_ms}");
+        assert_eq!(row(verdicts[999]).0, 0.999);
     }
 }
 
 #[test]
 fn a_damaged_count_costs_its_row_and_leaves_the_clock() {
-    for (link, doubtful) in [(Link::Device, 1), (Link::Recording, 0)] {
-        let mut rows = clocked(true, link);
-        for n in 0..5000 {
-            let count = if n == 3000 { 7 } else { n };
-            let verdict = rows.take(&sample(n as f64, Some(count)), n * MS);
-            if n == 3000 && link == Link::Device {
-                assert_eq!(verdict, Verdict::Doubtful);
-            } else {
-                assert_eq!(row(verdict).0, n as f64 / 1e3);
+    for link in [Link::Device, Link::Pipe, Link::Recording] {
+        for damaged in [7, 2_000_000] {
+            let (mut rows, mut taker) = (clocked(true, link), Taker::default());
+            for n in 0..5000 {
+                let given = taker.take(&mut rows, sample(n as f64, Some(if n == 3000 { damaged } else { n })), n * MS);
+                let lost = u64::from(n == 3001);
+                let expected = if n == 3000 { vec![] } else { vec![(n as f64 / 1e3, lost, n == 0)] };
+                assert_eq!(given, expected, "{link:?} {damaged}");
             }
+            assert_eq!((rows.counts().doubtful, rows.counts().set_back), (1, 0), "{link:?} {damaged}");
         }
-        // A recording's counter begins again and comes back.
-        let counts = rows.counts();
-        assert_eq!((counts.doubtful, counts.set_back), (doubtful, 1 - doubtful), "{link:?}");
     }
-    let mut rows = clocked(true, Link::Device);
-    let verdicts: Vec<Verdict> = (0..2000).map(|n| rows.take(&sample(n as f64, Some(n % 1000)), n * MS)).collect();
-    assert_eq!(verdicts[1000], Verdict::Doubtful);
-    assert_eq!(row(verdicts[1001]), (1.001, 0, true));
-    assert_eq!(row(verdicts[1999]), (1.999, 0, false));
+    // A counter that begins again, and one that counts something else.
+    let (mut rows, mut taker) = (clocked(true, Link::Device), Taker::default());
+    let given: Vec<_> =
+        (0..2000).flat_map(|n| taker.take(&mut rows, sample(n as f64, Some(n % 1000)), n * MS)).collect();
+    assert_eq!((given.len(), given[1000], given[1999]), (2000, (1.0, 0, true), (1.999, 0, false)));
+    let (mut rows, mut taker) = (clocked(true, Link::Recording), Taker::default());
+    let given: usize = (0..1001).map(|n| taker.take(&mut rows, sample(n as f64, Some(n * 100)), 0).len()).sum();
+    assert!(given >= 1000 && rows.counts().doubtful == 0 && rows.counts().set_back == 0, "{given}");
 }
 
 #[test]

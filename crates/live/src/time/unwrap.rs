@@ -32,7 +32,7 @@ pub struct Expected {
 pub struct Unwrap {
     per_second: f64,
     /// The latest stamp as it was read.
-    last: Option<f64>,
+    pub(crate) last: Option<f64>,
     /// What is added to stamps: so many units were wrapped away.
     base: f64,
     whole: bool,

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::files::folder_of;
+use crate::files::create_growing;
 use crate::live::error::LiveError;
 
 /// Hardly an event's line is longer, bytes.
@@ -25,8 +25,7 @@ impl EventsFile {
     /// It can't be made.
     pub(crate) fn create(path: Option<&Path>) -> Result<Option<Self>, LiveError> {
         let Some(path) = path else { return Ok(None) };
-        let made = std::fs::create_dir_all(folder_of(path)).and_then(|()| File::create(path));
-        let to = made.map_err(|why| LiveError::Write { path: path.to_owned(), why })?;
+        let to = create_growing(path, true).map_err(|why| LiveError::Write { path: path.to_owned(), why })?;
         Ok(Some(Self { path: path.to_owned(), to, line: Vec::with_capacity(USUAL) }))
     }
 

@@ -12,7 +12,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::files::{WriteError, folder_of};
+use crate::files::{WriteError, create_growing, folder_of, is_taken};
 use crate::live::error::LiveError;
 use crate::table::{Column, TableFormat, TableWriter, Value};
 
@@ -57,7 +57,7 @@ impl Recording {
     /// A recording, not begun yet; `waits` where the source can wait for the disk.
     ///
     /// # Errors
-    /// A name that is no table's, a file that exists and is not to be replaced, or a place that can't be written to:
+    /// A name that is no table's, a file that exists and is not to be replaced or grows already, or a place that can't be written to:
     /// nobody is recorded for nothing.
     pub(crate) fn new(out: &Path, replace: bool, waits: bool) -> Result<Self, LiveError> {
         let grows = match TableFormat::of(out)? {
@@ -68,6 +68,9 @@ impl Recording {
             if !replace && path.exists() {
                 return Err(LiveError::Exists(path.to_owned()));
             }
+        }
+        if OpenOptions::new().write(true).open(&grows).is_ok_and(|file| is_taken(&file)) {
+            return Err(LiveError::Taken(grows));
         }
         let folder = folder_of(&grows);
         let there = folder.ancestors().find(|at| at.exists()).unwrap_or(Path::new("."));
@@ -119,15 +122,7 @@ impl Recording {
     }
 
     fn begin(&mut self) -> Result<(), LiveError> {
-        let mut options = OpenOptions::new();
-        options.write(true);
-        if self.replace {
-            options.create(true).truncate(true)
-        } else {
-            options.create_new(true)
-        };
-        let made = std::fs::create_dir_all(folder_of(&self.grows)).and_then(|()| options.open(&self.grows));
-        let mut file = made.map_err(|why| self.refused(why))?;
+        let mut file = create_growing(&self.grows, self.replace).map_err(|why| self.refused(why))?;
         let header = self.columns.join(",") + "\n";
         file.write_all(header.as_bytes()).map_err(|why| self.refused(why))?;
         self.begun = true;

@@ -231,7 +231,9 @@ impl Stream {
 
     fn decode(&mut self, mut bytes: &[u8], end: u8, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
         if let Some(sequence) = self.sequence.as_mut().filter(|sequence| !sequence.has_clock()) {
-            sequence.announce(memchr::memchr_iter(end, bytes).count());
+            // Lines may end in CR alone.
+            let ends = |end: u8| memchr::memchr_iter(end, bytes).count();
+            sequence.announce(if end == b'\n' { ends(end).max(ends(b'\r')) } else { ends(end) });
         }
         while let Some(step) = self.decoder.next(&mut bytes, now_ns).map_err(|fault| self.wire(fault))? {
             self.live_step(step, now_ns, on)?;
@@ -250,7 +252,13 @@ impl Stream {
                 Ok(())
             }
             Step::Sample(sample) => {
-                self.live_row(&sample, now_ns, on);
+                if let Some((first, host_ns)) = self.judge(&sample) {
+                    self.live_row(&first, host_ns, on);
+                    self.held.behind(&mut self.decoder);
+                }
+                if !on.is_over {
+                    self.live_row(&sample, now_ns, on);
+                }
                 Ok(())
             }
         }
@@ -262,7 +270,11 @@ impl Stream {
             sequence.doubt();
         }
         let set_back = sequence.counts().set_back;
-        let Verdict::Row { time_s, lost, begins } = sequence.take(sample, now_ns) else { return };
+        let (time_s, lost, begins) = match sequence.take(sample, now_ns) {
+            Verdict::Row { time_s, lost, begins } => (time_s, lost, begins),
+            Verdict::Doubtful => return self.held.keep(*sample, now_ns, &self.decoder),
+            Verdict::Duplicate | Verdict::Late => return,
+        };
         if sequence.counts().set_back != set_back {
             self.envelope.clear();
         }
@@ -283,6 +295,7 @@ impl Stream {
         let within = live.within;
         if live.lose() {
             self.decoder.cut(within);
+            self.held.doubtful();
             if let Some(sequence) = &mut self.sequence {
                 sequence.come_back();
             }

@@ -3,6 +3,7 @@
 //! In: an address, or rows that a program makes, and what the columns mean. Out: [`Event`]s, from [`Stream::poll`]. No
 //! call waits, and none allocates for a row.
 
+mod held;
 mod live;
 mod played;
 
@@ -18,6 +19,7 @@ use crate::source::health::{Condition, Health, State};
 use crate::source::play::{Bytes, Play};
 use crate::time::{ClockFit, Envelope, Link, RowCounts, Sequence};
 use crate::wire::{Frames, LineOptions, Lines, Meaning, Naming, Row, Sample, Spoil, SpoiltRows, Step, WireFault};
+use held::Held;
 use live::Live;
 
 /// The bits of a frame's counter.
@@ -73,6 +75,7 @@ pub struct Stream {
     decoder: Decoder,
     /// Of rows, once the columns are known.
     sequence: Option<Sequence>,
+    held: Held,
     envelope: Envelope,
     health: Health,
     gaps: Gaps,
@@ -154,6 +157,7 @@ impl Stream {
             feed,
             decoder,
             sequence: None,
+            held: Held::default(),
             envelope: Envelope::default(),
             health: Health::new(condition, now_ns),
             gaps: Gaps::default(),
@@ -343,6 +347,7 @@ impl Stream {
     /// The columns are known.
     fn columns(&mut self, again: bool, on: &mut Sink<'_>) -> Result<(), SourceFault> {
         if again && let Some(sequence) = &mut self.sequence {
+            self.held.doubtful();
             sequence.begin();
             return Ok(());
         }
@@ -370,7 +375,21 @@ impl Stream {
         SourceFault::Wire { source_name: self.name.clone(), fault }
     }
 
+    /// Judges the row that is held back, if there is one, by the one that came behind it. Where it is right it takes
+    /// the decoder's place, and is given with when it came.
+    fn judge(&mut self, next: &Sample) -> Option<(Sample, u64)> {
+        let first = self.held.doubtful()?;
+        if !self.sequence.as_mut()?.settle(next) {
+            return None;
+        }
+        self.held.put_before(*next, &mut self.decoder);
+        Some(first)
+    }
+
     fn end(&mut self, on: &mut Sink<'_>) {
+        if let Some(sequence) = &mut self.sequence {
+            sequence.drop_doubtful();
+        }
         self.ended = true;
         on.send(Event::End);
     }

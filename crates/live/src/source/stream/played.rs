@@ -32,13 +32,25 @@ impl Stream {
             if on.is_over {
                 return Ok(());
             }
-            match self.played_step(now_ns)? {
+            let step = match self.held.behind(&mut self.decoder) {
+                Some(sample) => Some(Step::Sample(sample)),
+                None => self.played_step(now_ns)?,
+            };
+            match step {
                 Some(Step::Columns { again }) => self.columns(again, on)?,
                 Some(Step::Spoilt(kind)) => self.spoilt(kind, on),
                 Some(Step::Sample(sample)) => {
+                    let sample = self.judge(&sample).map_or(sample, |(first, _)| first);
                     let (Some(sequence), Feed::Play(play)) = (&mut self.sequence, &mut self.feed) else { continue };
                     let before = sequence.counts();
-                    let Verdict::Row { time_s, lost, begins } = sequence.take(&sample, now_ns) else { continue };
+                    let (time_s, lost, begins) = match sequence.take(&sample, now_ns) {
+                        Verdict::Row { time_s, lost, begins } => (time_s, lost, begins),
+                        Verdict::Doubtful => {
+                            self.held.keep(sample, now_ns, &self.decoder);
+                            continue;
+                        }
+                        Verdict::Duplicate | Verdict::Late => continue,
+                    };
                     play.rows += 1;
                     let due_ns = play.due_ns(time_s, now_ns);
                     play.waiting = Some(Waiting { time_s, lit: sample.lit, lost, begins, due_ns, before });
@@ -92,6 +104,7 @@ impl Stream {
             }
             (None, _) => return Ok(false),
         }
+        self.held.doubtful();
         if let Some(sequence) = &mut self.sequence {
             sequence.begin();
         }

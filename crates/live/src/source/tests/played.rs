@@ -198,3 +198,32 @@ fn a_played_row_allocates_nothing() {
     assert_eq!(counted.count_total, 0);
     assert!(rows >= 90_000);
 }
+
+#[test]
+fn a_damaged_time_costs_its_row_and_a_pause_none() {
+    let mut text = "time_s,n,P1\n".to_owned();
+    let mut truth = Vec::new();
+    for row in 0..300_u32 {
+        // Two pauses, and digits that are wrong before, at and behind one.
+        let time_s = f64::from(row) / 1e3 + if row >= 100 { 60.0 } else { 0.0 } + if row >= 200 { 0.5 } else { 0.0 };
+        let wrong_s = match row {
+            50 | 199 => 4000.0,
+            150 => -30.0,
+            _ => 0.0,
+        };
+        text.push_str(&format!("{:.3},{row},{}\n", time_s + wrong_s, row * 2));
+        if wrong_s == 0.0 {
+            truth.push((time_s, vec![f64::from(row * 2)]));
+        }
+    }
+    let file = file(text.as_bytes());
+    for address in [file.path().display().to_string(), format!("{}?rate=1000", file.path().display())] {
+        let (stream, log) = played(&address);
+        assert_eq!(log.rows.len(), truth.len());
+        for (row, (time_s, values)) in log.rows.iter().zip(&truth) {
+            assert!((row.time_s - time_s).abs() <= 1e-9 && row.values == *values, "{row:?} {time_s} {values:?}");
+        }
+        let counts = stream.certificate().counts;
+        assert_eq!((counts.doubtful, counts.lost, counts.set_back, counts.disorder), (3, 3, 0, 0));
+    }
+}

@@ -79,7 +79,7 @@ impl Frame {
 /// Decodes frames.
 pub struct Frames {
     naming: Option<Naming>,
-    decoded: Decoded,
+    pub(crate) decoded: Decoded,
     volts_per_count: Option<f64>,
     /// The bytes since the last zero; of longer garbage the beginning.
     carry: [u8; WIRE_BYTES],

@@ -1,7 +1,7 @@
 //! Lines of text to rows.
 //!
 //! In: bytes in pieces of any size. Out: the names of the columns, then a row for each line. Cells are separated by
-//! tabs, `;`, `,` or space, found from the first line, and may be in double quotes; lines end in LF or CR LF; empty
+//! tabs, `;`, `,` or space, found from the first line, and may be in double quotes; lines end in LF, CR LF or CR; empty
 //! ones and those that begin with `#` are passed over. Only columns in use are read. Once a line had a [`Checksum`],
 //! each row has to have one. Nothing is allocated for a row.
 
@@ -40,7 +40,7 @@ pub struct Lines {
     /// Until the columns have names.
     opening: Option<Opening>,
     given: bool,
-    decoded: Decoded,
+    pub(crate) decoded: Decoded,
     separator: Separator,
     numbers: Numbers,
     /// How rows are protected; none where they are not.
@@ -54,6 +54,8 @@ pub struct Lines {
     skipping: bool,
     /// The next line may be the end of one.
     seam: bool,
+    /// The last line ended in CR, to which an LF may belong.
+    after_cr: bool,
     line: u64,
 }
 
@@ -82,6 +84,7 @@ impl Lines {
             whole: false,
             skipping: false,
             seam: false,
+            after_cr: false,
             line: 0,
         }
     }
@@ -99,12 +102,16 @@ impl Lines {
                 }
                 continue;
             }
-            let Some(end) = memchr::memchr(b'\n', bytes) else {
+            if !bytes.is_empty() && std::mem::take(&mut self.after_cr) {
+                *bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);
+            }
+            let Some(end) = memchr::memchr2(b'\n', b'\r', bytes) else {
                 let piece = std::mem::take(bytes);
                 self.look(piece)?;
                 return Ok(self.carry_on(piece));
             };
             let piece = &bytes[..end];
+            self.after_cr = bytes[end] == b'\r';
             *bytes = &bytes[end + 1..];
             self.look(piece)?;
             if std::mem::take(&mut self.skipping) {
@@ -157,7 +164,7 @@ impl Lines {
     /// lost.
     pub fn cut(&mut self, within: bool) {
         self.carry.clear();
-        (self.whole, self.skipping, self.seam) = (false, false, within);
+        (self.whole, self.skipping, self.seam, self.after_cr) = (false, false, within, false);
     }
 
     fn look(&mut self, piece: &[u8]) -> Result<(), WireFault> {
@@ -199,7 +206,6 @@ impl Lines {
     fn line(&mut self, line: &[u8], host_ns: u64) -> Result<Found, WireFault> {
         self.line += 1;
         let line = line.strip_prefix(b"\xef\xbb\xbf").filter(|_| self.line == 1).unwrap_or(line);
-        let line = line.strip_suffix(b"\r").unwrap_or(line);
         // A tab at an end separates a cell.
         let bare = line.trim_ascii();
         if bare.is_empty() {

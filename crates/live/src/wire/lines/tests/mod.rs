@@ -51,6 +51,7 @@ fn lines_say_what_their_columns_are() {
         "sep=;\ntime_s;n;led;P1;P2;note\n0,5;3;1,0;1,25;;\n1;;;-0;2;\n",
         "time_s n  led P1 P2 note\n0.5 3.0 1 1.25 NA x\n  1 NA NA -0 2 x  \n",
         "# time_s,n,led,P1,P2,note\n0.5,3,1,1.25,,\n1,,,-0,2,,,\n",
+        "# by hand\r\rtime_s,n,led,P1,P2,note\r0.5,3,1,1.25,,x\r1,,,-0,2,\r",
     ] {
         let mut found = all(text);
         found.retain(|step| step != "BeforeNames");
