@@ -64,6 +64,27 @@ fn on_a_full_disk_results_are_whole_or_as_they_were() {
 }
 
 #[test]
+fn on_a_full_disk_a_recording_keeps_whole_rows_and_counts_them() {
+    let dir = Dir::new();
+    let text: String = (0..6000).map(|k| format!("{}.{:02},{}\n", k / 100, k % 100, 100_000 + k)).collect();
+    dir.write("1.csv", format!("time_s,P1\n{text}"));
+    let (code, said) = with_room(&dir, 32, "record --source 1.csv --out r.csv --json");
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("what was recorded until then is kept"), "{said}");
+    let kept = dir.text("r.csv");
+    assert!(
+        kept.len() > 30_000 && kept.ends_with('\n') && dir.text("1.csv").starts_with(&kept),
+        "{} bytes",
+        kept.len()
+    );
+    let lost = 6000 - (kept.lines().count() - 1);
+    assert!(said.contains(&format!("{lost} rows are not recorded")), "{lost}: {said}");
+    // It is as large as the files may be, and can't hold more.
+    let (code, said) = with_room(&dir, 0, "record --source 1.csv --out none.csv");
+    assert!(code != 0 && said.contains("can't be written"), "{said}");
+}
+
+#[test]
 fn a_report_that_can_t_be_written_is_not_nothing_done() {
     let dir = Dir::new();
     dir.write(

@@ -58,7 +58,7 @@ pub struct SessionFigures {
     pub latency: Latency,
     /// Rows that readers lost, as they were too slow.
     pub lost_by_readers: u64,
-    /// Rows that the recording lost, as the disk was too slow.
+    /// Rows that the recording lacks, as the disk was too slow or full.
     pub lost_by_disk: u64,
 }
 
@@ -163,7 +163,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     figures.columns = outputs.header;
     if let Some(mut predicted) = outputs.predicted {
         // Where nothing was answered that is what stands there, and not what an earlier session left.
-        failed.extend(predicted.push("").err().map(|why| why.to_string()));
+        failed.extend(predicted.push("").and_then(|()| predicted.close()).err().map(|why| why.to_string()));
         figures.lost_by_disk += predicted.lost;
         failed.extend(predicted.finish().err().map(|why| why.to_string()));
     }
@@ -244,7 +244,7 @@ impl SessionFigures {
             doubts.extend(step_s.filter(|_| sensor.lit >= STEPS).and_then(|step_s| impatient(shortest_s, step_s)));
         }
         let Some(mut samples) = samples else { return doubts };
-        failed.extend(samples.end_forces().err().map(|why| why.to_string()));
+        failed.extend(samples.close().err().map(|why| why.to_string()));
         doubts.extend(samples.doubts());
         if let Some(without) = samples.without_force() {
             *self.rows_without_force.get_or_insert(0) += without;
@@ -343,7 +343,7 @@ fn losses(report: &SessionReport) -> Vec<String> {
         ));
     }
     if report.lost_by_disk > 0 {
-        warnings.push(format!("{} rows are not recorded: the disk was too slow", report.lost_by_disk));
+        warnings.push(format!("{} rows are not recorded: the disk was too slow or is full", report.lost_by_disk));
     }
     if report.lost_by_readers > 0 {
         warnings.push(format!("readers lost {} rows: they were too slow", report.lost_by_readers));

@@ -6,7 +6,7 @@
 //! replaced unless that is asked for.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -36,7 +36,9 @@ pub(crate) struct Recording {
     shared: Arc<Shared>,
     writer: Option<JoinHandle<io::Result<()>>>,
     begun: bool,
-    /// Rows that were left out as the disk was too slow.
+    /// Rows that were handed on to be written.
+    handed_on: u64,
+    /// Rows that the file lacks, as the disk was too slow or full; all of them once it is closed.
     pub(crate) lost: u64,
 }
 
@@ -51,6 +53,8 @@ struct Pending {
     bytes: Vec<u8>,
     ends: bool,
     failed: bool,
+    /// Rows that the file has.
+    written: u64,
 }
 
 impl Recording {
@@ -84,6 +88,7 @@ impl Recording {
             shared: Arc::default(),
             writer: None,
             begun: false,
+            handed_on: 0,
             lost: 0,
         })
     }
@@ -98,12 +103,13 @@ impl Recording {
     /// # Errors
     /// The file can't be made, or could not be written.
     pub(crate) fn push(&mut self, row: &str) -> Result<(), LiveError> {
-        if self.writer.is_none() {
+        if self.writer.is_none() && !self.begun {
             self.begin()?;
         }
         let mut pending = self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner);
         if pending.failed {
             drop(pending);
+            self.lost += 1;
             return Err(self.close().err().unwrap_or_else(|| self.refused(io::ErrorKind::Other.into())));
         }
         if pending.bytes.len() + row.len() > MUCH_BYTES {
@@ -117,6 +123,7 @@ impl Recording {
             self.lost += 1;
         } else {
             pending.bytes.extend_from_slice(row.as_bytes());
+            self.handed_on += 1;
         }
         Ok(())
     }
@@ -128,7 +135,7 @@ impl Recording {
         self.begun = true;
         let shared = Arc::clone(&self.shared);
         self.writer = Some(std::thread::spawn(move || {
-            let written = write_rows(&mut file, &shared);
+            let written = write_rows(&mut file, header.len() as u64, &shared);
             shared.pending.lock().unwrap_or_else(PoisonError::into_inner).failed = written.is_err();
             shared.wake.notify_all();
             written
@@ -145,11 +152,16 @@ impl Recording {
         self.begun
     }
 
-    fn close(&mut self) -> Result<(), LiveError> {
+    /// Ends the file that grows.
+    ///
+    /// # Errors
+    /// What could not be written; the rows before it stay.
+    pub(crate) fn close(&mut self) -> Result<(), LiveError> {
         self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner).ends = true;
         self.shared.wake.notify_all();
         let Some(writer) = self.writer.take() else { return Ok(()) };
         let written = writer.join().unwrap_or_else(|_| Err(io::ErrorKind::Other.into()));
+        self.lost += self.handed_on - self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner).written;
         written.map_err(|why| self.refused(why))
     }
 
@@ -158,10 +170,11 @@ impl Recording {
     /// # Errors
     /// What could not be written; what was written before stays.
     pub(crate) fn finish(mut self) -> Result<bool, LiveError> {
-        if self.writer.is_none() {
+        self.close()?;
+        // What failed was said when it was closed.
+        if !self.begun || self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner).failed {
             return Ok(false);
         }
-        self.close()?;
         if !self.grows.exists() {
             return Err(self.refused(io::Error::new(io::ErrorKind::NotFound, "it was removed while it was written")));
         }
@@ -194,8 +207,9 @@ impl Drop for Recording {
     }
 }
 
-/// Writes what comes until it ends.
-fn write_rows(file: &mut File, shared: &Shared) -> io::Result<()> {
+/// Writes what comes until it ends, behind the `length` bytes that are there. Where the disk is full no half row is
+/// left, whose last number would be a wrong one.
+fn write_rows(file: &mut File, mut length: u64, shared: &Shared) -> io::Result<()> {
     let mut bytes = Vec::new();
     let mut synced = Instant::now();
     loop {
@@ -210,7 +224,19 @@ fn write_rows(file: &mut File, shared: &Shared) -> io::Result<()> {
             shared.wake.notify_all();
             pending.ends
         };
-        file.write_all(&bytes)?;
+        let written = file.write_all(&bytes);
+        let reached = match written {
+            Ok(()) => bytes.len(),
+            Err(_) => (file.stream_position().unwrap_or(length) - length) as usize,
+        };
+        let whole = bytes[..reached].iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
+        length += whole as u64;
+        let rows = memchr::memchr_iter(b'\n', &bytes[..whole]).count() as u64;
+        shared.pending.lock().unwrap_or_else(PoisonError::into_inner).written += rows;
+        if written.is_err() {
+            let _ = file.set_len(length);
+            return written;
+        }
         if ends || synced.elapsed() >= SYNC {
             file.sync_data()?;
             synced = Instant::now();

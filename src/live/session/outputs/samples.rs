@@ -246,7 +246,16 @@ impl Samples {
         self.forces.as_ref().map(|forces| forces.without)
     }
 
-    /// Rows that were left out as the disk was too slow.
+    /// Ends the file that grows.
+    ///
+    /// # Errors
+    /// What could not be written; the rows before it stay.
+    pub(crate) fn close(&mut self) -> Result<(), LiveError> {
+        self.end_forces()?;
+        self.recording.close()
+    }
+
+    /// Rows that the file lacks, as the disk was too slow or full; once it is closed.
     pub(crate) fn lost(&self) -> u64 {
         self.recording.lost
     }
@@ -255,8 +264,7 @@ impl Samples {
     ///
     /// # Errors
     /// What could not be written; what was written before stays.
-    pub(crate) fn finish(mut self) -> Result<bool, LiveError> {
-        self.end_forces()?;
+    pub(crate) fn finish(self) -> Result<bool, LiveError> {
         self.recording.finish()
     }
 }

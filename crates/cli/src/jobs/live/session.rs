@@ -221,7 +221,8 @@ pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
     let watch = Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} };
     let report = record(options, &files, &tell, &watch)?;
     if !common.json {
-        common.say(&format!("{} rows in {}", report.rows, files.out.unwrap_or_default().display()));
+        let recorded = report.rows - report.lost_by_disk;
+        common.say(&format!("{recorded} rows in {}", files.out.unwrap_or_default().display()));
     }
     common.print_json(&report)?;
     Ok(ended(common, &report))
