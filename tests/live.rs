@@ -161,12 +161,13 @@ fn a_recording_makes_its_folder_and_where_none_can_be_nothing_begins() {
 fn two_do_not_record_into_one_file() {
     let dir = desk();
     dir.write("1.csv", recording(1.0));
-    for out in ["r.csv", "r.parquet"] {
+    for (out, grows) in [("r.csv", "r.csv"), ("p.parquet", "p.parquet.csv")] {
         let mut first = start(&dir, &["record", "--source", "-", "--out", out]);
         first.write("time_s,P1\n0,1\n0.01,2\n");
-        let grows = dir.path(if out == "r.csv" { "r.csv" } else { "r.parquet.csv" });
-        let text = || std::fs::read_to_string(&grows).unwrap_or_default();
+        let text = || std::fs::read_to_string(dir.path(grows)).unwrap_or_default();
+        let begin = Instant::now();
         while text().lines().count() < 3 {
+            assert!(begin.elapsed() < PATIENCE, "{out}: nothing is recorded");
             std::thread::sleep(Duration::from_millis(10));
         }
         let second = dir.lunula(&["record", "--source", "1.csv", "--out", out, "--replace"]).expect(2);
