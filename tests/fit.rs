@@ -83,6 +83,8 @@ fn every_subject_has_photodiodes_of_its_own() {
     }
     let report = run(&dir, "fit", "a.csv b.csv --subject anna,ben --free k_V --out f.json --json").expect(0).json();
     assert_eq!(report["photodiodes"].list().len(), 4);
+    let notes = report["notes"].to_string();
+    assert!(notes.contains("anna, ben have one value of k_V_N_per_m"), "{notes}");
     for (file, scaling) in [("f-anna.toml", 2.0), ("f-ben.toml", 5.0)] {
         found_again(&dir, file, NEAR, &[("V1_1_V", scaling), ("k_V_N_per_m", 1e3)]);
     }

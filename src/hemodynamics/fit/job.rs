@@ -201,7 +201,7 @@ pub fn fit(
     };
     let left_out = left_out(steps(inputs, options, outputs, ambient(inputs, options), Some(ready.samples())));
     let warnings = warnings(&result, &ready.recordings);
-    let notes = notes(&ready.recordings, outputs.figures);
+    let notes = notes(&result, inputs, &ready.recordings, outputs.figures);
     let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };
     if outputs.report {
         places.write(&outputs.out, &result_text(&report))?;
@@ -273,7 +273,8 @@ fn delayed(delay: Delay, name: &str) -> Option<String> {
         format!(
             "{name}: photodiodes answer {:.0} +- {:.0} ms {order} what the loads would make of them: are both on one \
              clock? 40 ms change a stiffness several times over, and no standard error includes it; give the loads the \
-             times at which they were taken",
+             times at which they were taken. (Or does this finger differ from others whose parameters it shares, or is \
+             a column another's?)",
             1e3 * delay.by_s.abs(),
             1e3 * delay.standard_error_s
         )
@@ -281,8 +282,18 @@ fn delayed(delay: Delay, name: &str) -> Option<String> {
 }
 
 /// How recordings were read, and what the picture leaves out.
-fn notes(recordings: &[ReadRecording], figures: bool) -> Vec<String> {
+fn notes(result: &FitResult, inputs: &FitInputs, recordings: &[ReadRecording], figures: bool) -> Vec<String> {
     let mut notes = Vec::new();
+    let subjects = subjects_of(inputs, &(0..recordings.len()).collect::<Vec<_>>());
+    let shared: Vec<String> = result.groups.iter().flat_map(|group| &group.symbols).map(ToString::to_string).collect();
+    if subjects.len() > 1 && !shared.is_empty() {
+        notes.push(format!(
+            "{} have one value of {}; only offsets and scalings are each person's own: fit each person's recordings by \
+             themselves to see how much they differ",
+            subjects.join(", "),
+            shared.join(", ")
+        ));
+    }
     for read in recordings {
         notes.extend(read.notes.iter().map(|note| format!("{}: {note}", read.name)));
         if read.faults > 0 {

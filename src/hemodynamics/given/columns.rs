@@ -157,7 +157,8 @@ impl Rows {
         let missing: Vec<String> = needed.iter().filter(|name| !has(name)).map(|name| format!("`{name}`")).collect();
         if !missing.is_empty() {
             let what = format!(
-                "has no column {}; its columns are {}: rename or add what is missing",
+                "has no column {}; its columns are {}: rename or add what is missing, in the unit of its name (a \
+                 pressure in kPa times 1000 is in Pa)",
                 missing.join(", "),
                 listed(&self.names)
             );
@@ -173,8 +174,11 @@ impl Rows {
             if *name == time {
                 for (row, pair) in values.windows(2).enumerate() {
                     if pair[1] <= pair[0] {
-                        let what =
-                            format!("{} s comes after {} s; times have to grow from row to row", pair[1], pair[0]);
+                        let what = format!(
+                            "{} s comes after {} s; times have to grow from row to row: sort the rows, and keep one of \
+                             those that have the same time",
+                            pair[1], pair[0]
+                        );
                         faults.push((row + 1, self.fault(row + 1, name, what)));
                     }
                 }

@@ -103,7 +103,7 @@ impl Angles {
             let [a, b] = segment.markers.map(|marker| self.layout.markers[marker].name.as_str());
             format!("segment {} ({a} to {b}) {text}", segment.name)
         };
-        let lengths = self.lengths.changing().into_iter().map(named);
+        let lengths = self.lengths.zoomed().into_iter().chain(self.lengths.changing().into_iter().map(named));
         // After pictures that stood still, angles leap as well.
         let time = self.frozen.doubt().or_else(|| self.cut.doubt());
         self.metric.doubt().into_iter().chain(lengths).chain(time).chain(self.overlapping()).collect()
