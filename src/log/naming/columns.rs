@@ -76,7 +76,8 @@ impl Columns {
         let columns = &choice.columns;
         if !columns.iter().any(|(role, _)| *role == Role::Time) {
             return Err(format!(
-                "no time column found; its columns are {}; say which is the time, as in --columns \"time_s={}\"",
+                "no time column found; its columns are {}; say which is the time, as in --columns \"time_s={}\", \
+                 and with --time-unit what it counts if not seconds",
                 listed(names),
                 shown(names.first().map_or("", String::as_str), 0)
             ));
@@ -86,7 +87,7 @@ impl Columns {
             let places = Known::of(columns).places;
             let other = (0..names.len()).find(|k| !places.contains(k));
             let remedy = match other {
-                Some(k) => format!("say which they are, as in --columns \"P1={}\"", shown(&names[k], k)),
+                Some(k) => format!("say which they are, in volts, as in --columns \"P1={}\"", shown(&names[k], k)),
                 None => "record at least one".to_owned(),
             };
             return Err(format!("no photodiode found; its columns are {}; {remedy}", listed(names)));

@@ -87,7 +87,8 @@ impl Lengths {
         (enough && least > MOST_SD && most < ALIKE * least).then(|| {
             format!(
                 "all segments change their lengths alike, by {:.0} % (the standard deviation over frames): did the \
-                 camera zoom, or the hand come nearer? Angles are as right as before; a zoom of 20 % at once loses markers",
+                 camera zoom, or the hand come nearer? Angles are as right as before; a zoom of 20 % at once loses \
+                 markers",
                 100.0 * most
             )
         })

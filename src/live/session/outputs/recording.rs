@@ -61,8 +61,8 @@ impl Recording {
     /// A recording, not begun yet; `waits` where the source can wait for the disk.
     ///
     /// # Errors
-    /// A name that is no table's, a file that exists and is not to be replaced or grows already, or a place that can't be written to:
-    /// nobody is recorded for nothing.
+    /// A name that is no table's, a file that exists and is not to be replaced or grows already, or a place that can't
+    /// be written to: nobody is recorded for nothing.
     pub(crate) fn new(out: &Path, replace: bool, waits: bool) -> Result<Self, LiveError> {
         let grows = match TableFormat::of(out)? {
             TableFormat::Csv => out.to_owned(),

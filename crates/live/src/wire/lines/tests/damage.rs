@@ -7,8 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::time::{Link, Sequence, Verdict};
 
-const STREAM: &str = "\u{feff}# made by hand\r\ntime_us,n,led,P1,P2\r\n0,1,1,0.5,\"7\"\r\n\n1000,2,0,,1e3\n2000,3\n1500,7,0,1,2\r\
-                      3000,4,1,x,1\nboot: 7\ntime_us,n,led,P1,P2\n10,0,0,-3,2*5\n20,1,1,3,4,\n30,2,1,5,6";
+const STREAM: &str = "\u{feff}# made by hand\r\ntime_us,n,led,P1,P2\r\n0,1,1,0.5,\"7\"\r\n\n1000,2,0,,1e3\n2000,3\n\
+                      1500,7,0,1,2\r3000,4,1,x,1\nboot: 7\ntime_us,n,led,P1,P2\n10,0,0,-3,2*5\n20,1,1,3,4,\n30,2,1,5,6";
 
 #[test]
 fn every_cut_gives_the_same_rows() {
