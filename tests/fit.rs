@@ -445,6 +445,12 @@ fn a_log_with_an_led_is_fitted_to_the_leds_own_light() {
     let columns = "--columns time_s=t,led=lamp,pf1_Pa=near,pf2_Pa=far,P1=a,P2=b";
     let named = run(&dir, "fit", &format!("other.csv {columns} {options} --out g.json")).expect(0).json();
     assert_eq!((&named["r2"], &named["free"]), (&report["r2"], &report["free"]));
+    // A column that isn't known for the LED's.
+    dir.write("lamp.csv", modulated(&dir, "time_s,lamp,pf1_Pa,pf2_Pa,P1,P2", 0));
+    let lamp = run(&dir, "fit", &format!("lamp.csv {options} --out l.json")).expect(0).json();
+    let said = lamp["warnings"].to_string();
+    assert!(said.contains("lamp.csv: P1, P2 go up and down from row to row"), "{said}");
+    assert!(!report["warnings"].to_string().contains("go up and down"), "{report}");
     // An unlit row is the first one.
     dir.write("dark.csv", modulated(&dir, HEADER, 1));
     let dark = run(&dir, "fit", &format!("dark.csv {options} --out d.json")).expect(0).json();

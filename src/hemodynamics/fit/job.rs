@@ -15,7 +15,7 @@ use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::input::copies;
 use crate::job::{Outputs, Report, Watch};
-use crate::log::ambient_step_of;
+use crate::log::{ambient_step_of, doubts::alternating};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
 
@@ -256,6 +256,10 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
     warnings.extend(copies(recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()))));
     for read in recordings {
         warnings.extend(read.warnings.iter().map(|warning| format!("{}: {warning}", read.name)));
+        let traces = read.photodiodes.iter().zip(&read.recording.photodiodes);
+        let voltages = traces.map(|(name, trace)| (name.as_str(), &trace.voltages_v[..]));
+        let by_turns = read.times_s.is_some().then(|| alternating(voltages)).flatten();
+        warnings.extend(by_turns.map(|doubt| format!("{}: {doubt}", read.name)));
         for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {
             let mut known = trace.voltages_v.iter().filter(|value| value.is_finite());
             if known.next().is_some_and(|first| known.all(|value| value == first)) {
