@@ -312,7 +312,7 @@ fn microseconds_of_32_bits_go_on_after_their_end() {
     let mut stamps: Vec<u64> = began((1 << 32) - 1_000_000).collect();
     stamps.swap(199, 200);
     let log = good(&of(stamps));
-    assert!((0..500).all(|k| (log.time_s[k] - (4293.967_296 + k as f64 * 0.005)).abs() <= 1e-9));
+    assert!((0..500).all(|k| (log.time_s[k] - (4_293.967_296 + k as f64 * 0.005)).abs() <= 1e-9));
     assert!(noted(&log, &["32 bits of microseconds began again", "line 201"]), "{:?}", log.notes);
     // A clock that starts again elsewhere, or goes on elsewhere.
     for (first, second) in [((1 << 32) - 9_000_000, 0), ((1 << 32) - 1_000_000, 3_000_000)] {

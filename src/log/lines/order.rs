@@ -27,7 +27,7 @@ const STAYS: f64 = 0.75;
 const STAYS_SES: f64 = 12.0;
 
 /// After so many seconds 32 bits of microseconds begin again, as those of an Arduino do.
-const TURN_S: f64 = 4294.967_296;
+const TURN_S: f64 = 4_294.967_296;
 
 /// Orders the rows by time.
 pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Result<Log, LogError> {
