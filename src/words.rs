@@ -63,25 +63,51 @@ pub(crate) fn plain(name: &str) -> String {
     composed(name).chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
 }
 
-/// A warning where two names of what there is one of, `Anna` and `anna`, differ in case, spaces or the encoding of
-/// accents only.
+/// As [`plain`], without the zeros in front of numbers, which spreadsheets take away: `s01` and `S1` are one, `s1` and
+/// `s10`, `0.05` and `0.5` are not.
+fn unpadded(name: &str) -> String {
+    let name = plain(name);
+    let mut left = String::with_capacity(name.len());
+    let mut rest = name.chars().peekable();
+    while let Some(c) = rest.next() {
+        let mut before = left.chars().rev();
+        let is_within = match before.next() {
+            Some('.' | ',') => before.next().is_some_and(|c| c.is_ascii_digit()),
+            last => last.is_some_and(|c| c.is_ascii_digit()),
+        };
+        let is_in_front = c == '0' && !is_within && rest.peek().is_some_and(char::is_ascii_digit);
+        if !is_in_front {
+            left.push(c);
+        }
+    }
+    left
+}
+
+/// A warning where two names of what there is one of, `Anna` and `anna`, `1` and `01`, differ in case, spaces, zeros in
+/// front of numbers or the encoding of accents only.
 pub(crate) fn twins<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let mut seen: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
     for name in names {
-        seen.entry(plain(name)).or_default().insert(name);
+        seen.entry(unpadded(name)).or_default().insert(name);
     }
     let twins: Vec<BTreeSet<&str>> = seen.into_values().filter(|alike| alike.len() > 1).collect();
     let has_accents_apart = twins.iter().flatten().any(|name| composed(name) != *name);
+    let is_padded = |alike: &BTreeSet<&str>| alike.iter().map(|name| plain(name)).collect::<BTreeSet<_>>().len() > 1;
+    let has_zeros = twins.iter().any(is_padded);
     let names = |alike: &BTreeSet<&str>| {
         alike.iter().map(|name| format!("`{}`", shown(name))).collect::<Vec<_>>().join(" and ")
     };
     let names: Vec<String> = twins.iter().map(names).collect();
-    let each = if has_accents_apart {
-        format!("differ in case, spaces or the encoding of accents only, and count apart: are they the same? {COMPOSE}")
-    } else {
-        "differ in case or spaces only, and count apart: are they the same?".to_owned()
+    let by = match (has_zeros, has_accents_apart) {
+        (false, false) => "case or spaces",
+        (true, false) => "case, spaces or zeros in front of numbers",
+        (false, true) => "case, spaces or the encoding of accents",
+        (true, true) => "case, spaces, zeros in front of numbers or the encoding of accents",
     };
-    (!twins.is_empty()).then(|| format!("{what} {} {each}", names.join(", ")))
+    let compose = if has_accents_apart { format!(" {COMPOSE}") } else { String::new() };
+    (!twins.is_empty()).then(|| {
+        format!("{what} {} differ in {by} only, and count apart: are they the same?{compose}", names.join(", "))
+    })
 }
 
 /// What to write instead of an unknown `name`: the nearest, or the choice.
@@ -149,6 +175,20 @@ mod tests {
             "{said}"
         );
         assert_eq!(twins("subjects", ["Zoe", "Zo\u{eb}", "Zoa\u{308}"]), None);
+    }
+
+    #[test]
+    fn zeros_in_front_of_numbers_make_no_other_name() {
+        let said = |names: &[&str]| twins("subjects", names.iter().copied()).unwrap_or_default();
+        let zeros = "differ in case, spaces or zeros in front of numbers only, and count apart: are they the same?";
+        for [one, other] in [["01", "1"], ["S1", "s01"], ["0", "00"], ["p003_b", "p3_b"], ["s 007", "s07"]] {
+            assert_eq!(said(&[one, other, "s11", "10"]), format!("subjects `{one}` and `{other}` {zeros}"));
+        }
+        assert_eq!(said(&["s1", "s10", "s11", "s100", "s101", "1", "10", "0.05", "0.5", "1,05", "1,5", "0", "s0"]), "");
+        assert_eq!(
+            said(&["S1", "s1"]),
+            "subjects `S1` and `s1` differ in case or spaces only, and count apart: are they the same?"
+        );
     }
 
     #[test]

@@ -125,7 +125,20 @@ fn poses_in_names(names: &[(&str, &str)]) -> Option<String> {
 /// What a program or a person appends to the name of a photograph that is there already has so many letters at most.
 const APPENDED: usize = 5;
 
-/// Subjects of a pose whose names are another's and a little more, as of a photograph that was taken or saved again.
+/// A number that is appended to a name has so many digits at most (assumed: more are a camera's or a date's).
+const APPENDED_DIGITS: usize = 2;
+
+/// Whether a name is another's and a number, `s05_2` or `s05 (2)`.
+fn is_numbered_after(name: &str, other: &str) -> bool {
+    let Some(tail) = name.strip_prefix(other).filter(|tail| tail.starts_with([' ', '_', '-', '('])) else {
+        return false;
+    };
+    let number = tail.trim_matches([' ', '_', '-', '(', ')']);
+    (1..=APPENDED_DIGITS).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Subjects whose names are another's and a little more, as of a photograph that was taken or saved again: of one pose,
+/// or, where a number is what is more, of poses of which none has both.
 fn again<'a>(names: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
     let mut by_pose: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     names.for_each(|(pose, subject)| {
@@ -139,7 +152,16 @@ fn again<'a>(names: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> 
         };
         subjects.iter().filter_map(first).collect()
     };
-    let all: Vec<[&str; 2]> = by_pose.values().flat_map(of_pose).collect();
+    let mut all: Vec<[&str; 2]> = by_pose.values().flat_map(of_pose).collect();
+    let subjects: BTreeSet<&str> = by_pose.values().flatten().copied().collect();
+    for other in &subjects {
+        let ends = other.char_indices().filter(|(_, c)| " _-(".contains(*c)).map(|(at, _)| at);
+        let one = ends.filter_map(|at| subjects.get(other[..at].trim_end())).find(|one| is_numbered_after(other, one));
+        let Some(one) = one else { continue };
+        if !by_pose.values().any(|pose| pose.contains(one) && pose.contains(other)) {
+            all.push([*one, *other]);
+        }
+    }
     let [one, other] = all.first()?;
     let more = if all.len() > 1 { format!(" ({} more)", all.len() - 1) } else { String::new() };
     Some(format!(
@@ -203,6 +225,11 @@ mod tests {
             let said = said(&[("p", "s01"), ("p", other), ("rest", "s02")]);
             assert!(said.contains(&format!("`s01` and `{other}` count as two people: ")), "{said}");
         }
-        assert_eq!(said(&[("p", "s1"), ("p", "s10"), ("rest", "s1_2"), ("p", "anna-maria"), ("p", "s1_another")]), "");
+        let apart = said(&[("p", "s05"), ("rest", "s05_2"), ("p", "s06"), ("rest", "s06")]);
+        assert!(apart.contains("`s05` and `s05_2` count as two people: "), "{apart}");
+        let padded = said(&[("p", "s05"), ("rest", "S5"), ("p", "s06")]);
+        assert!(padded.starts_with("subjects `S5` and `s05` differ in case, spaces or zeros"), "{padded}");
+        let others = [("p", "s1"), ("p", "s10"), ("rest", "s1_b"), ("rest", "s1_2041"), ("p", "anna-maria")];
+        assert_eq!(said(&[&others[..], &[("p", "s1_another"), ("rest", "s2_1"), ("p", "s2_2")]].concat()), "");
     }
 }

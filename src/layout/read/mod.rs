@@ -7,6 +7,7 @@ mod tables;
 
 use super::error::LayoutError;
 use super::options::{LayoutInputs, LayoutOptions};
+use crate::words::twins;
 pub(super) use given::Parts;
 pub(super) use given::{Contrast, Given, Target, WithoutSubject, pairs};
 pub use given::{LeftOutCandidates, PersonFigures};
@@ -15,7 +16,7 @@ pub(super) use places::{Place, is_photodiode};
 
 /// Reads tables and logs, or maps.
 pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Given, LayoutError> {
-    match &inputs.data[..] {
+    let mut given = match &inputs.data[..] {
         [] => Err(LayoutError::Request("no input is given; name tables, logs or a folder of maps".to_owned())),
         [one] if is_maps(&one.path) => maps::read(&one.path, options),
         several => match several.iter().find(|one| one.path.is_dir()) {
@@ -29,5 +30,7 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
             }
             None => tables::read(inputs, options),
         },
-    }
+    }?;
+    given.warnings.extend(twins("subjects", given.persons.iter().map(|person| person.name.as_str())));
+    Ok(given)
 }

@@ -16,8 +16,8 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::{MOST_AT_FULL_SCALE, Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
-use crate::photo::pose::sort_by_pose;
+use crate::photo::outline::{AxisUnknown, SavedOutlines, Source, Sources, has_nails};
+use crate::photo::pose::{self, sort_by_pose};
 use crate::photo::results::{DrawnSheet, NailRow, NailTable, nail_columns};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Look, Partials, Sums};
@@ -447,7 +447,11 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
         left_out
             .push("channels compared: over all subjects, so photographs are needed: `lunula photos --channels`".into());
     }
-    let warnings = doubts_of_sums(partials);
+    let mut warnings = doubts_of_sums(partials);
+    let poses_of = || partials.poses.iter();
+    warnings.extend(pose::doubts(|| {
+        poses_of().flat_map(|(pose, sums)| sums.subjects().into_iter().map(move |subject| (pose.as_str(), subject)))
+    }));
     Report { left_out, warnings, notes, ..Report::new("photos merge", watch, figures) }
 }
 
