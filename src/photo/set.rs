@@ -16,7 +16,7 @@ use crate::input;
 use crate::photo::pose::sort_by_pose;
 use crate::photograph::{extension, is_picture};
 use crate::table::{delimiter_of, line_of_row};
-use crate::words::{COMPOSE, shown};
+use crate::words::{COMPOSE, composed, shown};
 
 /// Photographs in formats that lunula does not read: said, not passed over.
 const OTHER_PICTURES: [&str; 14] =
@@ -99,6 +99,8 @@ pub struct PhotoSet {
     pub unlisted: Vec<String>,
     /// Folders within those of poses that hold photographs, which are not used, and how many, sorted.
     pub deeper: Vec<(String, usize)>,
+    /// JSON files beside photographs that are called as none of them, and that a manifest does not name, sorted.
+    pub alone: Vec<PathBuf>,
 }
 
 impl PhotoSet {
@@ -162,6 +164,7 @@ impl PhotoSet {
         self.photos.sort();
         sort_by_pose(&mut self.photos, |photo| &photo.pose);
         self.faults.sort();
+        self.alone.sort();
     }
 
     /// The poses, the thesis' first and in its order, then by name.
@@ -186,6 +189,7 @@ impl PhotoSet {
             for file in files {
                 self.consider(&file, &pose, format!("{pose}/{}", name_of(&file)));
             }
+            self.alone.extend(called_as_no_picture(&files));
             let is_of_set = |folder: &&PathBuf| {
                 let name = name_of(folder).to_lowercase();
                 !(is_apart(folder) || MASKS.contains(&name.as_str()) || name.starts_with('@'))
@@ -199,6 +203,7 @@ impl PhotoSet {
             }
         }
         let has_poses = self.photos.len() > before;
+        self.alone.extend(called_as_no_picture(&files));
         let flat_name = self.folder.canonicalize().map_or_else(|_| "photos".into(), |f| name_of(&f));
         for file in files {
             let name = name_of(&file);
@@ -276,9 +281,11 @@ impl PhotoSet {
             self.photos.push(Photo { pose, subject, path: self.folder.join(&file), file, outline, tone });
         }
         let folders: BTreeSet<&Path> = named.iter().filter_map(|path| path.parent()).collect();
-        let beside = folders.into_iter().filter_map(|folder| Some(list(folder).ok()?.0)).flatten();
-        let unlisted = beside.filter(|path| is_picture(path) && !named.contains(path));
-        self.unlisted = unlisted.map(|path| path.display().to_string()).collect();
+        for (files, _) in folders.into_iter().filter_map(|folder| list(folder).ok()) {
+            self.alone.extend(called_as_no_picture(&files).into_iter().filter(|file| !named.contains(file)));
+            let unlisted = files.into_iter().filter(|path| is_picture(path) && !named.contains(path));
+            self.unlisted.extend(unlisted.map(|path| path.display().to_string()));
+        }
         self.unlisted.sort();
         Ok(())
     }
@@ -413,3 +420,13 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
 fn name_of(path: &Path) -> String {
     path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
 }
+/// The JSON files of a folder's files that are called as none of its pictures, whatever the encoding of accents.
+fn called_as_no_picture(files: &[PathBuf]) -> Vec<PathBuf> {
+    let stem = |path: &Path| composed(&path.file_stem().unwrap_or_default().to_string_lossy());
+    let is_any_picture =
+        |path: &&PathBuf| is_picture(path) || extension(path).is_some_and(|e| OTHER_PICTURES.contains(&e.as_str()));
+    let pictures: BTreeSet<String> = files.iter().filter(is_any_picture).map(|path| stem(path)).collect();
+    let is_json = |path: &&PathBuf| extension(path).is_some_and(|ending| ending == "json");
+    files.iter().filter(is_json).filter(|path| !pictures.contains(&stem(path))).cloned().collect()
+}
+

@@ -195,6 +195,11 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails,
     Ok(DrawnNails { nails, has_size: file.size().is_some(), image_path: file.image_path })
 }
 
+/// Whether a file is LabelMe's and has a nail.
+pub(crate) fn has_nails(file: &Path) -> bool {
+    LabelMe::read(file).is_ok_and(|file| file.shapes.iter().any(|shape| is(shape, NAIL)))
+}
+
 /// The photograph that an annotation says it was drawn on, where that is there and is another than `photo`: files that
 /// were renamed or converted keep the old name, and it means nothing.
 pub(crate) fn other_photograph(file: &Path, image_path: &str, photo: &Path) -> Option<PathBuf> {

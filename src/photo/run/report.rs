@@ -222,6 +222,7 @@ impl<'a> Findings<'a> {
             .chain(self.unclear())
             .chain(self.without_mask())
             .chain(self.encoded_otherwise())
+            .chain(self.of_no_photograph())
             .chain(self.blurred())
             .chain(self.overexposed())
             .chain(doubts(self.set, &self.rows, &self.looks))
@@ -322,6 +323,21 @@ impl<'a> Findings<'a> {
         let odd: Vec<&str> = all.iter().filter(|(_, is_odd)| *is_odd).map(|(photo, _)| photo.file.as_str()).collect();
         let what = "LabelMe file(s) don't say the size of the picture they were drawn on (imageWidth, imageHeight";
         let look = if self.options.check_outlines { "look at them with `lunula edit`" } else { CHECK };
+    /// LabelMe files with nails that no photograph is called as.
+    fn of_no_photograph(&self) -> Option<String> {
+        if self.options.outlines.sources == Sources::Detect {
+            return None;
+        }
+        let mut such = self.set.alone.iter().filter(|file| has_nails(file));
+        let first = such.next()?;
+        Some(format!(
+            "{} LabelMe file(s) with nails are not used, as no photograph beside them is called so ({} first): were \
+             photographs renamed or removed? Call each as its photograph, or remove it",
+            1 + such.count(),
+            first.strip_prefix(&self.set.folder).unwrap_or(first).display()
+        ))
+    }
+
         match (odd.first(), is_warning) {
             (Some(first), true) => Some(format!(
                 "{} {what}), and on {} of these photographs ({first} first) an outline reaches beyond it or is not \
