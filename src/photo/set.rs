@@ -186,8 +186,8 @@ impl PhotoSet {
         for pose_folder in folders.iter().filter(|f| !is_apart(f)) {
             let pose = name_of(pose_folder);
             let (files, within) = list(pose_folder)?;
-            for file in files {
-                self.consider(&file, &pose, format!("{pose}/{}", name_of(&file)));
+            for file in &files {
+                self.consider(file, &pose, format!("{pose}/{}", name_of(file)));
             }
             self.alone.extend(called_as_no_picture(&files));
             let is_of_set = |folder: &&PathBuf| {
@@ -265,13 +265,17 @@ impl PhotoSet {
             let line = record.position().map_or(0, |position| line_of_row(rows, position));
             let place = format!("photos.csv, line {line}");
             let cell = |at: usize| record.get(at).unwrap_or_default().to_owned();
-            let (file, subject, pose) = (cell(file), cell(subject), cell(pose));
+            if record.iter().all(str::is_empty) {
+                continue;
+            }
+            let (file, subject, pose) = (self.with_slashes(cell(file)), cell(subject), cell(pose));
             named.insert(self.folder.join(&file));
             if let Some(what) = row_fault(&self.folder, &file, &subject, &pose) {
                 self.fault(place, what);
                 continue;
             }
-            let outline = outline.map(cell).filter(|o| !o.is_empty()).map(|o| self.folder.join(o));
+            let outline = outline.map(cell).filter(|o| !o.is_empty());
+            let outline = outline.map(|outline| self.folder.join(self.with_slashes(outline)));
             if let Some(missing) = outline.as_ref().filter(|o| !o.is_file()) {
                 self.fault(place, format!("the outline {} does not exist{}", missing.display(), accents(missing)));
                 continue;
@@ -288,6 +292,13 @@ impl PhotoSet {
         }
         self.unlisted.sort();
         Ok(())
+    }
+
+    /// A file of a manifest as it is there: Windows writes `\` where folders end.
+    fn with_slashes(&self, file: String) -> String {
+        let slashed = file.replace('\\', "/");
+        let is_meant = slashed != file && !self.folder.join(&file).exists() && self.folder.join(&slashed).is_file();
+        if is_meant { slashed } else { file }
     }
 
     /// A subject counts once per pose: none of several is better than the others.
@@ -417,9 +428,6 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
     Ok(paths.into_iter().partition(|p| !p.is_dir()))
 }
 
-fn name_of(path: &Path) -> String {
-    path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
-}
 /// The JSON files of a folder's files that are called as none of its pictures, whatever the encoding of accents.
 fn called_as_no_picture(files: &[PathBuf]) -> Vec<PathBuf> {
     let stem = |path: &Path| composed(&path.file_stem().unwrap_or_default().to_string_lossy());
@@ -430,3 +438,6 @@ fn called_as_no_picture(files: &[PathBuf]) -> Vec<PathBuf> {
     files.iter().filter(is_json).filter(|path| !pictures.contains(&stem(path))).cloned().collect()
 }
 
+fn name_of(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+}
