@@ -118,8 +118,9 @@ pub(in crate::photo) fn nail_columns() -> [&'static str; COLUMNS.len()] {
     COLUMNS.map(|(name, _)| name)
 }
 
-/// Some columns of it: of which photograph and whose a nail is, where it lies, and whether it was used.
+/// Some columns of it: of which photograph, which of its nails and whose one is, where it lies, whether it was used.
 const FILE: usize = 0;
+const NUMBER: usize = 1;
 const SUBJECT: usize = 2;
 const POSE: usize = 3;
 const FRAME: Range<usize> = 6..11;
@@ -142,6 +143,8 @@ struct NailSheet {
 pub(in crate::photo) struct NailTable {
     /// Cells, row by row.
     pub(in crate::photo) rows: Vec<Vec<String>>,
+    /// The part of each row, by its place among the parts; of a run none.
+    parts: Vec<usize>,
     /// Every normalized picture, small, pose by pose; of merged parts none.
     sheets: Vec<NailSheet>,
 }
@@ -167,7 +170,7 @@ impl NailTable {
             }
         }
         let cells = |row: &NailRow| COLUMNS.map(|(_, cell)| cell(row, &set.photos[row.photo])).to_vec();
-        Self { rows: rows.iter().map(cells).collect(), sheets }
+        Self { rows: rows.iter().map(cells).collect(), parts: Vec::new(), sheets }
     }
 
     /// From the tables of parts, in the order that one run would have given: by pose, subject, file, nail.
@@ -176,14 +179,15 @@ impl NailTable {
     /// [`MergeError::Nails`].
     pub(in crate::photo) fn of_parts(parts: &[PathBuf]) -> Result<Self, MergeError> {
         let mut rows = Vec::new();
-        for part in parts {
-            rows.extend(read(&part.join(NAME))?);
+        for (at, part) in parts.iter().enumerate() {
+            rows.extend(read(&part.join(NAME))?.into_iter().map(|row| (at, row)));
         }
-        rows.sort_by_cached_key(|row: &Vec<String>| {
+        rows.sort_by_cached_key(|(_, row): &(usize, Vec<String>)| {
             let (place, pose) = rank(&row[POSE]);
-            (place, pose.to_owned(), row[SUBJECT].clone(), row[FILE].clone(), row[1].parse::<u32>().unwrap_or(0))
+            (place, pose.to_owned(), row[SUBJECT].clone(), row[FILE].clone(), row[NUMBER].parse::<u32>().unwrap_or(0))
         });
-        Ok(Self { rows, sheets: Vec::new() })
+        let (parts, rows) = rows.into_iter().unzip();
+        Ok(Self { rows, parts, sheets: Vec::new() })
     }
 
     /// What to say of several people's nails that lie at one place of their photographs, to a thousandth of a pixel.
@@ -218,11 +222,20 @@ impl NailTable {
         self.sheets.par_iter().map(draw).collect()
     }
 
-    /// Where the normalized picture of each used subject would be, if its part has pictures.
+    /// Where the normalized picture of each used subject would be, if its part has pictures: what else lies there is of
+    /// an earlier run.
     pub(in crate::photo) fn pictures(&self, parts: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
-        let used = (0..self.rows.len()).filter(|&row| self.is_used(row)).map(|row| &self.rows[row]);
-        used.flat_map(move |row| {
-            parts.iter().map(move |part| part.join(format!("normalized/{}/{}.png", row[POSE], row[SUBJECT])))
+        let photograph = |row: usize| [self.rows[row][POSE].as_str(), self.rows[row][SUBJECT].as_str()];
+        let mut nails: BTreeMap<(usize, [&str; 2]), usize> = BTreeMap::new();
+        for (row, part) in self.parts.iter().enumerate() {
+            *nails.entry((*part, photograph(row))).or_default() += 1;
+        }
+        let used = self.parts.iter().enumerate().filter(|(row, _)| self.is_used(*row));
+        used.map(move |(row, part)| {
+            let [pose, subject] = photograph(row);
+            let several = nails[&(*part, [pose, subject])] > 1;
+            let tail = if several { format!("-{}", self.rows[row][NUMBER]) } else { String::new() };
+            parts[*part].join(format!("normalized/{pose}/{subject}{tail}.png"))
         })
     }
 
