@@ -580,3 +580,72 @@ fn pictures_of_other_channels_values_or_axes_than_the_others_are_named() {
     only(slants.clone(), "the drawn axis is not the finger's direction in nominal/s03.png (by the picture it is ");
     assert!(slants[0].contains("degrees further clockwise"), "{slants:?}");
 }
+
+#[test]
+fn empty_rows_and_the_slashes_of_windows_cost_no_photograph() {
+    let dir = Dir::new();
+    for photo in ["set/normal/a", "set/normal/b", "set/extension/a"] {
+        dir.nail(photo);
+    }
+    let rows = "normal\\a.png;a;normal\nnormal/b.png;b;normal\n;;\nextension\\a.png;a;extension\n;;\n";
+    dir.write("set/photos.csv", format!("file;subject;pose\n{rows}"));
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0).never_says("failed").never_says("beside those");
+    let files: Vec<String> = dir.table("out/nails.csv").into_iter().map(|row| row["file"].clone()).collect();
+    assert_eq!(files, ["normal/a.png", "normal/b.png", "extension/a.png"]);
+    // A row that has something, and a name that really has a backslash.
+    dir.nail("set/normal/c\\d");
+    dir.write("set/photos.csv", format!("file;subject;pose\n{rows};x;\nnormal/c\\d.png;c;normal\n"));
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(1).says("photos.csv, line 7: the cell `file` is empty");
+    assert_eq!(dir.table("out/nails.csv").len(), 4);
+}
+
+#[test]
+fn outlines_of_no_photograph_and_drawn_nails_left_out_are_said() {
+    let dir = Dir::new();
+    for photo in ["set/normal/a", "set/normal/b", "set/normal/c", "set/extension/a", "set/extension/b"] {
+        dir.nail(photo);
+    }
+    dir.write("set/normal/settings.json", "{\"camera\": 3}");
+    dir.write("set/extension/other.json", labelme([320, 240], &[("finger", "polygon", drawn_outline())]));
+    let job = ["photos", "set", "--out", "out"];
+    dir.lunula(&job).expect(0).never_says("LabelMe file(s)").never_says("left out");
+    for (from, to) in [("normal/a", "normal/x"), ("extension/b", "extension/y")] {
+        let path = |name: &str| dir.path(&format!("set/{name}.png"));
+        std::fs::rename(path(from), path(to)).expect("renamed");
+    }
+    let said = "warning: 2 LabelMe file(s) with nails are not used, as no photograph beside them is called so \
+                (extension/b.json first)";
+    let answer = dir.lunula(&job);
+    assert!(answer.stderr.contains(said), "{}", answer.stderr);
+    // Where a manifest names it, it is used.
+    dir.write("set/photos.csv", "file,subject,pose,outline\nnormal/x.png,x,normal,normal/a.json\n");
+    dir.lunula(&job).expect(0).never_says("LabelMe file(s)");
+    // A second nail that is drawn as a rectangle.
+    let nails = [
+        ("nail", "polygon", drawn_outline()),
+        ("axis", "line", drawn_axis()),
+        ("nail", "rectangle", vec![[3.0, 3.0], [30.0, 40.0]]),
+    ];
+    let size = image::image_dimensions(dir.path("set/normal/x.png")).expect("a picture");
+    dir.write("set/normal/a.json", labelme(size.into(), &nails));
+    dir.lunula(&job).expect(0).says(
+        "warning: 1 drawn nail(s) are left out, others of their photographs being used: normal/x.png, nail 2 first: \
+         shape 3 is a rectangle labelled nail",
+    );
+}
+
+#[test]
+fn pictures_of_an_earlier_run_are_no_copies_in_a_merge() {
+    let dir = Dir::new();
+    for photo in ["one/normal/a", "one/normal/b", "two/normal/b"] {
+        dir.nail(photo);
+    }
+    dir.lunula(&["photos", "one", "--out", "first"]).expect(0);
+    std::fs::remove_file(dir.path("one/normal/b.png")).expect("removed");
+    std::fs::remove_file(dir.path("one/normal/b.json")).expect("removed");
+    dir.lunula(&["photos", "one", "--out", "first"]).expect(0);
+    dir.lunula(&["photos", "two", "--out", "second"]).expect(0);
+    assert!(dir.path("first/normalized/normal/b.png").exists());
+    let answer = dir.lunula(&["photos", "merge", "first", "second", "--out", "all"]).expect(0);
+    assert!(!answer.stderr.contains("first/normalized/normal/b.png"), "{}", answer.stderr);
+}

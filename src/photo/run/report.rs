@@ -225,6 +225,7 @@ impl<'a> Findings<'a> {
             .chain(self.of_no_photograph())
             .chain(self.blurred())
             .chain(self.overexposed())
+            .chain(self.drawn_and_left_out())
             .chain(doubts(self.set, &self.rows, &self.looks))
             .collect()
     }
@@ -254,6 +255,25 @@ impl<'a> Findings<'a> {
             used.count(),
             self.set.photos[bright.first()?.photo].file,
             100.0 * most
+        ))
+    }
+
+    /// Nails that somebody drew and that are left out, on photographs of which others are used: of those that gave
+    /// nothing it is said elsewhere.
+    fn drawn_and_left_out(&self) -> Option<String> {
+        let used: BTreeSet<usize> =
+            self.rows.iter().filter(|row| row.normalized.is_some()).map(|row| row.photo).collect();
+        let is_left_out =
+            |row: &&NailRow| row.normalized.is_none() && row.source != Source::Detected && used.contains(&row.photo);
+        let mut such = self.rows.iter().filter(is_left_out);
+        let first = such.next()?;
+        Some(format!(
+            "{} drawn nail(s) are left out, others of their photographs being used: {}, nail {} first: {}; correct \
+             them with `lunula edit` (nails.csv lists all), or remove what is no nail",
+            1 + such.count(),
+            self.set.photos[first.photo].file,
+            first.number,
+            first.reason
         ))
     }
 
@@ -303,6 +323,21 @@ impl<'a> Findings<'a> {
         ))
     }
 
+    /// LabelMe files with nails that no photograph is called as.
+    fn of_no_photograph(&self) -> Option<String> {
+        if self.options.outlines.sources == Sources::Detect {
+            return None;
+        }
+        let mut such = self.set.alone.iter().filter(|file| has_nails(file));
+        let first = such.next()?;
+        Some(format!(
+            "{} LabelMe file(s) with nails are not used, as no photograph beside them is called so ({} first): were \
+             photographs renamed or removed? Call each as its photograph, or remove it",
+            1 + such.count(),
+            first.strip_prefix(&self.set.folder).unwrap_or(first).display()
+        ))
+    }
+
     /// Outlines that were taken for another photograph's.
     fn drawn_on_others(&self) -> Option<String> {
         let (first, other) = self.drawn_elsewhere.first()?;
@@ -323,21 +358,6 @@ impl<'a> Findings<'a> {
         let odd: Vec<&str> = all.iter().filter(|(_, is_odd)| *is_odd).map(|(photo, _)| photo.file.as_str()).collect();
         let what = "LabelMe file(s) don't say the size of the picture they were drawn on (imageWidth, imageHeight";
         let look = if self.options.check_outlines { "look at them with `lunula edit`" } else { CHECK };
-    /// LabelMe files with nails that no photograph is called as.
-    fn of_no_photograph(&self) -> Option<String> {
-        if self.options.outlines.sources == Sources::Detect {
-            return None;
-        }
-        let mut such = self.set.alone.iter().filter(|file| has_nails(file));
-        let first = such.next()?;
-        Some(format!(
-            "{} LabelMe file(s) with nails are not used, as no photograph beside them is called so ({} first): were \
-             photographs renamed or removed? Call each as its photograph, or remove it",
-            1 + such.count(),
-            first.strip_prefix(&self.set.folder).unwrap_or(first).display()
-        ))
-    }
-
         match (odd.first(), is_warning) {
             (Some(first), true) => Some(format!(
                 "{} {what}), and on {} of these photographs ({first} first) an outline reaches beyond it or is not \
