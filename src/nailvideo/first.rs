@@ -105,14 +105,18 @@ impl Finder {
         index < last
     }
 
-    /// Why there is no nail where no frame was looked at.
-    pub(in crate::nailvideo) fn nowhere(&self) -> String {
-        match self.drawn_on {
-            0 => "no frame could be decoded".to_owned(),
-            frame => format!(
-                "is drawn on frame {frame} (`{DRAWN_ON}`), which the video does not have, or which can't be decoded"
-            ),
+    /// Why there is no nail where no frame of `video` was looked at.
+    pub(in crate::nailvideo) fn nowhere(&self, video: &Path) -> String {
+        if self.place == OutlinePlace::Detection {
+            return "no frame could be decoded".to_owned();
         }
+        format!(
+            "is drawn on frame {} of {} (counted from 0), which the video does not have, or which can't be decoded: \
+             draw the nail on another frame in LabelMe and add that frame's number to the file, as \"{DRAWN_ON}\": 30, \
+             or give no outline, and the nail is looked for",
+            self.drawn_on,
+            video.display()
+        )
     }
 
     /// The nail on an upright frame.
@@ -190,4 +194,25 @@ pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> Photograp
 pub fn mask_of(folder: &Path, video: &Path) -> Option<PathBuf> {
     let stem = video.file_stem()?.to_string_lossy();
     PICTURES.iter().map(|ending| folder.join(format!("{stem}.{ending}"))).find(|path| path.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_that_cannot_be_decoded_is_named_with_its_film() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let outline = dir.path().join("outline.json");
+        let mut file = LabelMe::new("first.png", 64, 48, Vec::new());
+        let said = |file: &LabelMe| {
+            file.write(&outline).expect("written");
+            Finder::new(Some(&outline), &NailVideoOptions::default()).nowhere(Path::new("nv/film.mp4"))
+        };
+        let first = said(&file);
+        assert!(first.starts_with("is drawn on frame 0 of nv/film.mp4 (counted from 0), which"), "{first}");
+        assert!(first.contains("\"lunulaFrame\": 30"), "{first}");
+        file.other.insert(DRAWN_ON.to_owned(), 7.into());
+        assert!(said(&file).starts_with("is drawn on frame 7 of nv/film.mp4"), "{}", said(&file));
+    }
 }

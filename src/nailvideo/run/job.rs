@@ -108,7 +108,7 @@ pub fn run(
     let mut counts = FrameCounts::default();
     let mut kept: Vec<Kept> = Vec::new();
     let mut at_work: Option<AtWork> = None;
-    let mut why_not = finder.nowhere();
+    let mut why_not = finder.nowhere(&inputs.video);
     // What a person may correct.
     let mut suggested: Option<Suggestion> = None;
     rayon::in_place_scope(|scope| -> Result<(), NailVideoError> {
