@@ -461,7 +461,8 @@ impl Job<'_> {
         report.warnings.extend(repeated(&traces, &noise, |row| kept[row].index));
         report.warnings.extend(leaps(&traces, |row| kept[row].index));
         report.warnings.extend(reversed(&pressed));
-        report.warnings.extend(tinted(traces.iter().map(|trace| (trace.name.as_str(), trace.tint.as_slice()))));
+        let tints = traces.iter().map(|trace| (trace.name.as_str(), trace.tint.as_slice()));
+        report.warnings.extend(tinted(tints, self.light));
         if noise.iter().all(Option::is_none) {
             report.warnings.push("too few frames to know the photodiodes' noise: no standard errors".to_owned());
         }

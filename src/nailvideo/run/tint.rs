@@ -7,6 +7,7 @@
 //! the whole video.
 
 use crate::median::{ends, median_of};
+use crate::nailvideo::options::Light;
 use crate::nailvideo::press::noise_sd;
 
 /// Frames on each side that are averaged, by their median: what lasts shorter is noise.
@@ -50,17 +51,24 @@ pub(super) fn tints(all: &[Ratios], enlarged: f64, is_of_skin: bool) -> Vec<Vec<
     off.iter().zip(all).map(of).collect()
 }
 
-/// What to say of photodiodes that light takes along; `named` are names and [`tints`].
-pub(super) fn tinted<'a>(named: impl Iterator<Item = (&'a str, &'a [f64])>) -> Option<String> {
+/// What to say of photodiodes that light takes along; `named` are names and, in the unit of the table of values, by how
+/// much.
+pub(super) fn tinted<'a>(named: impl Iterator<Item = (&'a str, &'a [f64])>, light: Light) -> Option<String> {
+    let (decimals, unit) = match light {
+        Light::Red => (1, "of 100 ln (green / red)"),
+        Light::Skin => (1, "of 100 ln (green / skin)"),
+        Light::None => (4, "of green, full scale being 1"),
+    };
     let most = |tint: &[f64]| tint.iter().fold(0.0, |most, by| f64::max(most, by.abs()));
-    let all: Vec<String> =
-        named.filter(|(_, tint)| most(tint) > 0.0).map(|(name, tint)| format!("{name} ({:.1})", most(tint))).collect();
+    let all: Vec<String> = named
+        .filter(|(_, tint)| most(tint) > 0.0)
+        .map(|(name, tint)| format!("{name} ({:.decimals$})", most(tint)))
+        .collect();
     (!all.is_empty()).then(|| {
         format!(
             "glare or a shadow that colours the light goes over {}: blue changes there by more than blood changes it, \
-             and values may be off by as much as in brackets, of 100 ln (green / red). Their standard errors hold \
-             that. Turn lamp or hand until nothing shines on the nail, keep shadows off it, fix the white balance, \
-             and film again",
+             and values may be off by as much as in brackets, {unit}. Their standard errors hold that. Turn lamp or \
+             hand until nothing shines on the nail, keep shadows off it, fix the white balance, and film again",
             all.join(", ")
         )
     })
@@ -121,7 +129,16 @@ mod tests {
         let tints = tints(&pressed(5.0), 1.0, false);
         assert!(tints[0][240] >= 5.0 && tints[0][150].abs() <= 1.5, "{} {}", tints[0][240], tints[0][150]);
         assert!(tints[1].iter().all(|by| *by == 0.0));
-        let said = tinted(["P1", "P2"].into_iter().zip(tints.iter().map(Vec::as_slice))).expect("a warning");
+        let said = |light: Light, part: f64| {
+            let of: Vec<Vec<f64>> = tints.iter().map(|tint| tint.iter().map(|by| part * by).collect()).collect();
+            tinted(["P1", "P2"].into_iter().zip(of.iter().map(Vec::as_slice)), light).expect("a warning")
+        };
+        // As of a green of 0.4: percent of it.
+        let none = said(Light::None, 0.004);
+        assert!(none.contains("goes over P1 (0.0") && !none.contains("(0.0000)"), "{none}");
+        assert!(none.contains("of green, full scale being 1") && !none.contains(" ln "), "{none}");
+        assert!(said(Light::Skin, 1.0).contains("of 100 ln (green / skin)"));
+        let said = said(Light::Red, 1.0);
         assert!(said.contains("goes over P1 (") && !said.contains("P2"), "{said}");
     }
 
