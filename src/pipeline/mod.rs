@@ -13,7 +13,7 @@ mod tasks;
 #[cfg(test)]
 mod tests;
 
-pub use init::{InitError, propose};
+pub use init::{InitError, Proposal, propose};
 pub use items::catalogue::{Catalogue, CatalogueFile, CatalogueTask};
 pub use items::generated::{Asked, Block, Placed, phantom_catalogue, scenes};
 pub use jobs::kinds;

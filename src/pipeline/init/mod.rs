@@ -10,6 +10,8 @@ mod shape;
 mod tests;
 mod write;
 
+pub use write::Proposal;
+
 use std::path::{Path, PathBuf};
 
 /// Why there is no pipeline for a folder.
@@ -25,7 +27,7 @@ pub enum InitError {
 
 /// Writes a pipeline for what lies in `folder`; `from` is that folder as the pipeline file will name it, with `/`,
 /// empty for its own.
-pub fn propose(folder: &Path, from: &str) -> Result<String, InitError> {
+pub fn propose(folder: &Path, from: &str) -> Result<Proposal, InitError> {
     let found = look::look(folder).map_err(|why| InitError::Unreadable { path: folder.to_owned(), why })?;
     write::pipeline(&found, from).ok_or_else(|| {
         let what = if found.all.is_empty() {

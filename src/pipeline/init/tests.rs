@@ -11,11 +11,25 @@ const LOG: &str = "time_s,P1,P2,Fz_N\n0,1,2,-1\n";
 /// What is proposed, after it was planned without fault.
 fn proposed(files: &[(&str, &str)]) -> (String, Vec<String>) {
     let dir = folder(files);
-    let text = propose(dir.path(), "").unwrap();
+    let text = propose(dir.path(), "").unwrap().text;
     let spec =
         Spec::parse(&text, &dir.path().join("pipeline.toml"), kinds()).unwrap_or_else(|why| panic!("{why}\n{text}"));
     let plan = Plan::new(&spec, &dir.path().join("out"), None).unwrap_or_else(|why| panic!("{why}\n{text}"));
     (text, plan.tasks.into_iter().map(|task| task.id).collect())
+}
+
+#[test]
+fn photographs_that_the_pattern_does_not_fit_are_said() {
+    let photos = [("nails/rest/S01.png", ""), ("nails/rest/S02.png", ""), ("nails/press/S01.png", "")];
+    let left_out = |files: &[(&str, &str)]| propose(folder(files).path(), "").unwrap().left_out;
+    assert_eq!(left_out(&photos), [""; 0]);
+    let said = left_out(&[&photos[..], &[("nails/rest/S03.jpg", "")]].concat());
+    assert_eq!(said.len(), 1, "{said:?}");
+    let words = "photographs of nails of another folder, name or ending than nails/{pose}/{subject}.png, which are \
+                 not used: nails/rest/S03.jpg; ";
+    assert!(said[0].starts_with(words), "{said:?}");
+    let (text, _) = proposed(&[&photos[..], &[("nails/rest/S03.jpg", "")]].concat());
+    assert!(text.contains(&format!("#   {}\n", said[0])), "{text}");
 }
 
 #[test]

@@ -33,23 +33,35 @@ impl Input {
     }
 }
 
+/// A pipeline file for a folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Proposal {
+    /// What to write.
+    pub text: String,
+    /// Files of the sorts that it works on which its patterns leave out, in words; the text says it too.
+    pub left_out: Vec<String>,
+}
+
 /// A pipeline file in the making.
 struct Draft<'a> {
     from: &'a str,
     /// All files of the folder.
     all: Listed,
     notes: Vec<String>,
+    /// Notes of files that a person would expect to be used.
+    left_out: Vec<String>,
     inputs: String,
     stages: String,
     wanted: Vec<&'static str>,
 }
 
-/// The text; none where nothing found can be worked on.
-pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<String> {
+/// The file; none where nothing found can be worked on.
+pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<Proposal> {
     let mut draft = Draft {
         from,
         all: Listed::new(found.all.iter().map(String::as_str)),
         notes: Vec::new(),
+        left_out: Vec::new(),
         inputs: String::new(),
         stages: String::new(),
         wanted: Vec::new(),
@@ -67,14 +79,15 @@ pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<String> {
     }
     let wanted: Vec<String> = draft.wanted.iter().map(|name| format!("\"{name}\"")).collect();
     let notes: String = draft.notes.iter().map(|note| format!("#   {note}\n")).collect();
-    Some(format!(
+    let text = format!(
         "# Written by `lunula init`.\n#\n#   lunula run THIS.toml --out results --plan      what would be done, and \
          what not\n#   lunula run THIS.toml --out results             again: only what is new\n#\n# What was \
          found:\n{notes}\nwanted = [{}]\n{}{}",
         wanted.join(", "),
         draft.inputs,
         draft.stages
-    ))
+    );
+    Some(Proposal { text, left_out: draft.left_out })
 }
 
 impl Draft<'_> {
@@ -256,7 +269,13 @@ impl Draft<'_> {
         let NamePattern { pattern, names, values, others } = shape(paths, places)?;
         self.notes.push(format!("{} {what}: {pattern}", values.len()));
         if !others.is_empty() {
-            self.notes.push(format!("{what} that lie elsewhere, and are not used: {}", listed(&others)));
+            let said = format!(
+                "{what} of another folder, name or ending than {pattern}, which are not used: {}; move, rename or \
+                 export them as the others, or name them in an input of their own",
+                listed(&others)
+            );
+            self.notes.push(said.clone());
+            self.left_out.push(said);
         }
         let _ = write!(self.inputs, "\n[inputs.{name}]\nfiles = {}\n", quoted(&format!("{}{pattern}", self.from)));
         self.choose(what, &pattern, &names, &values);

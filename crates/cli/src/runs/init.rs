@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 use lunula::files::{clear_leftovers, write_whole};
-use lunula::pipeline::propose;
+use lunula::pipeline::{Proposal, propose};
 use serde_json::json;
 
 use crate::{Common, Outcome};
@@ -33,12 +33,13 @@ pub(crate) fn run(args: &InitArgs) -> anyhow::Result<Outcome> {
         bail!("{}: stands already and is left; name another file with --out", out.display());
     }
     let from = seen_from(&args.folder, home_of(&out))?;
-    let text = propose(&args.folder, &from)?;
+    let Proposal { text, left_out } = propose(&args.folder, &from)?;
     let home = home_of(&out);
     std::fs::create_dir_all(home).with_context(|| format!("{}: cannot be made", home.display()))?;
     clear_leftovers(home);
     write_whole(&out, text.as_bytes())?;
-    args.common.print_json(&json!({ "job": "init", "pipeline": out, "failed": [] }))?;
+    args.common.warn(&left_out);
+    args.common.print_json(&json!({ "job": "init", "pipeline": out, "warnings": left_out, "failed": [] }))?;
     args.common.say(&format!(
         "{}: look at it, then `lunula run {} --out results --plan`",
         out.display(),
