@@ -263,8 +263,9 @@ impl<'a> Findings<'a> {
     fn drawn_and_left_out(&self) -> Option<String> {
         let used: BTreeSet<usize> =
             self.rows.iter().filter(|row| row.normalized.is_some()).map(|row| row.photo).collect();
-        let is_left_out =
-            |row: &&NailRow| row.normalized.is_none() && row.source != Source::Detected && used.contains(&row.photo);
+        // A mask's specks are no nails.
+        let is_drawn = |row: &NailRow| row.source == Source::Annotated || row.drawn.is_some();
+        let is_left_out = |row: &&NailRow| row.normalized.is_none() && is_drawn(row) && used.contains(&row.photo);
         let mut such = self.rows.iter().filter(is_left_out);
         let first = such.next()?;
         Some(format!(
