@@ -649,3 +649,30 @@ fn pictures_of_an_earlier_run_are_no_copies_in_a_merge() {
     let answer = dir.lunula(&["photos", "merge", "first", "second", "--out", "all"]).expect(0);
     assert!(!answer.stderr.contains("first/normalized/normal/b.png"), "{}", answer.stderr);
 }
+
+#[test]
+fn parts_of_one_nail_in_a_mask_are_said() {
+    let dir = Dir::new();
+    for subject in ["a", "b", "c"] {
+        drawn_nail().save(dir.place(&format!("set/normal/{subject}.png"))).expect("a picture");
+    }
+    let said = |value: &dyn Fn(u32, u32) -> u8| {
+        let mask = image::GrayImage::from_fn(160, 140, |x, y| {
+            let (u, v) = ((f64::from(x) - 80.0) / 30.0, (f64::from(y) - 70.0) / 40.0);
+            image::Luma([if u.powi(4) + v.powi(4) <= 1.0 { value(x, y) } else { 0 }])
+        });
+        for subject in ["a", "b", "c"] {
+            mask.save(dir.place(&format!("masks/normal/{subject}.png"))).expect("a mask");
+        }
+        dir.words("photos set --masks masks --distal up --out out").stderr
+    };
+    let words = "regions of one mask touch along a long border: normal/a.png, nail 2 beside nail 1, ";
+    let bed_and_lunula = said(&|_, y| if y > 92 { 1 } else { 2 });
+    assert!(bed_and_lunula.contains(words), "{bed_and_lunula}");
+    let cut = said(&|_, y| if (69..71).contains(&y) { 0 } else { 255 });
+    assert!(cut.contains(words), "{cut}");
+    // Two nails a tenth of their width apart; one nail.
+    let two = said(&|x, _| if (78..=81).contains(&x) { 0 } else { 255 });
+    let one = said(&|_, _| 255);
+    assert!(!(two + &one).contains("regions of one mask"), "{one}");
+}

@@ -130,6 +130,36 @@ impl Outline {
         holds(self, other) || holds(other, self)
     }
 
+    /// The share of its border that is no further than `gap_px` from the border of `other`, 0 to 1, to pieces of that
+    /// length.
+    pub(crate) fn share_beside(&self, other: &Self, gap_px: f64) -> f64 {
+        let near = |a: Rect<f64>, b: Rect<f64>| {
+            let apart = |low: f64, high: f64| low - high > gap_px;
+            !(apart(a.min().x, b.max().x)
+                || apart(b.min().x, a.max().x)
+                || apart(a.min().y, b.max().y)
+                || apart(b.min().y, a.max().y))
+        };
+        if !self.polygon.bounding_rect().zip(other.polygon.bounding_rect()).is_some_and(|(a, b)| near(a, b)) {
+            return 0.0;
+        }
+        let (mut all, mut beside) = (0.0, 0.0);
+        for side in self.polygon.exterior().lines() {
+            let length = side.dx().hypot(side.dy());
+            let pieces = (length / gap_px).ceil().max(1.0) as u32;
+            let part = length / f64::from(pieces);
+            for piece in 0..pieces {
+                let at = (f64::from(piece) + 0.5) / f64::from(pieces);
+                let middle = Point::new(side.start.x + at * side.dx(), side.start.y + at * side.dy());
+                all += part;
+                if Euclidean.distance(&middle, other.polygon.exterior()) <= gap_px {
+                    beside += part;
+                }
+            }
+        }
+        if all > 0.0 { beside / all } else { 0.0 }
+    }
+
     /// Intersection over union with `other`, 0 to 1 (exact, by polygon clipping).
     pub fn iou(&self, other: &Self) -> f64 {
         let apart = |a: Option<Rect<f64>>, b: Option<Rect<f64>>| a.zip(b).is_some_and(|(a, b)| !a.intersects(&b));

@@ -86,6 +86,13 @@ impl Source {
 /// A hand draws so far beyond the edge of the photograph, pixels (assumed).
 const BEYOND_PX: f64 = 2.0;
 
+/// Regions of a mask touch where they are so many pixels, or this share of the smaller one's extent, from each other
+/// (assumed: a line of three pixels divides them; nails of neighbouring fingers are a tenth of their width apart) ..
+const GAP_PX: f64 = 3.5;
+const GAP_SHARE: f64 = 0.06;
+/// .. along this share of one's border (assumed: half a nail has a quarter to a third of its own where it was cut).
+const TOUCHING_SHARE: f64 = 0.2;
+
 /// A nail with all that the next step needs, or what is known of one that is left out.
 #[derive(Debug, Clone)]
 pub struct Nail {
@@ -101,15 +108,16 @@ pub struct Nail {
     pub slants_deg: Option<f64>,
     /// The number, from 1, of an earlier nail of the photograph that is drawn around the same place.
     pub drawn_over: Option<usize>,
+    /// The number, from 1, of an earlier region of its mask that it touches along a long border.
+    pub touches: Option<usize>,
     /// Why it is left out; empty for one that is used.
     pub reason: String,
 }
 
 impl Nail {
     fn drawn(source: Source, outline: Outline, axis: Option<Axis>) -> Self {
-        let outline = Some(outline);
-        let (slants_deg, drawn_over, reason) = (None, None, String::new());
-        Self { source, outline, axis, confidence: Some(1.0), slants_deg, drawn_over, reason }
+        let confidence = Some(1.0);
+        Self { outline: Some(outline), axis, confidence, ..Self::left_out(source, String::new()) }
     }
 
     /// Leaves it out.
@@ -127,7 +135,16 @@ impl Nail {
     }
 
     fn left_out(source: Source, reason: String) -> Self {
-        Self { source, outline: None, axis: None, confidence: None, slants_deg: None, drawn_over: None, reason }
+        Self {
+            source,
+            outline: None,
+            axis: None,
+            confidence: None,
+            slants_deg: None,
+            drawn_over: None,
+            touches: None,
+            reason,
+        }
     }
 
     /// As it was drawn in LabelMe; `file` begins what is said of its fault.
@@ -285,6 +302,7 @@ impl OutlineOptions {
         let too_large = regions.too_large(f64::from(mask.width()) * f64::from(mask.height()));
         let mut nails: Vec<Nail> =
             regions.nails.into_iter().map(|outline| Nail::drawn(Source::Mask, outline, None)).collect();
+        find_touching(&mut nails);
         self.complete_axes(picture, &mut nails);
         for (nail, why) in nails.iter_mut().zip(too_large) {
             if let Some(why) = why {
@@ -407,6 +425,20 @@ fn find_drawn_over(nails: &mut [Nail]) {
         let Some(outline) = &nails[k].outline else { continue };
         let is_one = |earlier: &Nail| earlier.outline.as_ref().is_some_and(|earlier| earlier.is_around(outline));
         nails[k].drawn_over = nails[..k].iter().position(is_one).map(|earlier| earlier + 1);
+    }
+}
+
+/// Finds regions of a mask that are parts of one nail: they touch, or continue each other across a thin line.
+fn find_touching(nails: &mut [Nail]) {
+    for k in 1..nails.len() {
+        let Some(outline) = &nails[k].outline else { continue };
+        let is_beside = |earlier: &Nail| {
+            let Some(earlier) = &earlier.outline else { return false };
+            let extent_px = outline.area_px2().min(earlier.area_px2()).sqrt();
+            let gap_px = GAP_PX.min(GAP_SHARE * extent_px);
+            outline.share_beside(earlier, gap_px).max(earlier.share_beside(outline, gap_px)) >= TOUCHING_SHARE
+        };
+        nails[k].touches = nails[..k].iter().position(is_beside).map(|earlier| earlier + 1);
     }
 }
 

@@ -47,6 +47,8 @@ pub struct NailRow {
     pub(in crate::photo) slants_deg: Option<f64>,
     /// An earlier nail of the photograph that is drawn around the same place, by its number.
     pub(in crate::photo) drawn_over: Option<usize>,
+    /// An earlier region of its mask that it touches along a long border, by its number.
+    pub(in crate::photo) touches: Option<usize>,
     /// Of a drawn outline, the same for the same corners to the last digit.
     pub(in crate::photo) drawn: Option<u64>,
     /// A point of the drawn outline that stands out alone, pixels.
@@ -75,6 +77,7 @@ impl NailRow {
             hues: Hues::default(),
             slants_deg: nail.slants_deg,
             drawn_over: nail.drawn_over,
+            touches: nail.touches,
             drawn: drawn.map(corners),
             spike_px: by_hand.and_then(Outline::spike),
             instead: None,

@@ -106,6 +106,24 @@ fn drawn_twice(nails: &[Used]) -> Option<String> {
     ))
 }
 
+/// Regions of a mask that are parts of one nail, of which one at least counts.
+fn in_parts(set: &PhotoSet, rows: &[NailRow]) -> Option<String> {
+    let is_used = |photo: usize, number: usize| {
+        rows.iter().any(|row| row.photo == photo && row.number == number && row.survey.is_some())
+    };
+    let such = rows.iter().filter_map(|row| {
+        let earlier =
+            row.touches.filter(|earlier| [*earlier, row.number].iter().any(|one| is_used(row.photo, *one)))?;
+        Some(format!("{}, nail {} beside nail {earlier}", set.photos[row.photo].file, row.number))
+    });
+    Some(format!(
+        "regions of one mask touch along a long border: {}; are they parts of one nail, as its bed and its lunula, or \
+         cut by a line? Each is taken for a nail of its own, with the wrong length or width: fill the whole nail with \
+         one value",
+        some(&such.collect::<Vec<_>>())?
+    ))
+}
+
 /// Nails that the network sees elsewhere than they are drawn.
 fn elsewhere(nails: &[Used]) -> Option<String> {
     let such = nails.iter().filter_map(|nail| Some((&nail.photo.file, nail.row.number, nail.row.instead.as_ref()?)));
@@ -132,6 +150,7 @@ pub(super) fn doubts(set: &PhotoSet, rows: &[NailRow], looks: &[(&Photo, Look)])
         slanting(&nails),
         spiked(&nails),
         drawn_twice(&nails),
+        in_parts(set, rows),
         elsewhere(&nails),
         folders(set),
         deeper(set),
