@@ -391,10 +391,50 @@ fn words_name_subjects_and_constant_photodiodes_and_every_wrong_name_once() {
     dir.write("flat.csv", flat);
     let answer = run(&dir, "fit", "s.csv flat.csv --subject anna,ben --free none --out f.json --no-figures").expect(0);
     let words = answer.stdout.clone() + &answer.stderr;
-    assert!(words.contains("flat.csv: VP1 is constant: it determines nothing"), "{words}");
+    assert!(words.contains("flat.csv: VP1 is constant: it determines nothing, and is left out"), "{words}");
     assert!(!words.contains("VP2 is constant") && words.contains("unit 1 of anna") && words.contains("unit 2 of ben"));
     let wrong = run(&dir, "fit", "s.csv --free k_Q,zz --out g.json").expect(2).stderr;
     assert!(wrong.contains("--free k_Q,zz") && wrong.matches("k_C, k_V").count() == 1, "{wrong}");
+}
+
+#[test]
+fn a_constant_photodiode_changes_nothing_of_the_fit_of_the_others() {
+    let dir = Dir::new();
+    run(&dir, "simulate", "--static 0..9000/500 --out s.csv --no-figures").expect(0);
+    let rows = dir.table("s.csv");
+    // Another unit's photodiode is stuck; the other one has noise of up to 2 mV.
+    let write = |file: &str, constant: Option<f64>| {
+        let mut csv = "pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+        for (k, row) in rows.iter().enumerate() {
+            let first = number(row, "VP1") + 4e-3 * ((k * k * 7 + 3 * k) % 11) as f64 / 10.0 - 2e-3;
+            let second = constant.map_or(row["VP2"].clone(), |value| value.to_string());
+            csv += &format!("{},{},{first},{second}\n", row["pf1_Pa"], row["pf2_Pa"]);
+        }
+        dir.write(file, csv);
+    };
+    write("good.csv", None);
+    let fit = |options: &str| {
+        let answer = run(&dir, "fit", &format!("{options} --free k_C,b_C --out f.json --no-figures"));
+        (answer.expect(0), std::fs::read(dir.path("f-estimates.csv")).unwrap(), dir.json("f.json")["r2"].clone())
+    };
+    let (_, alone, r2) = fit("good.csv --photodiode VP1=1");
+    for constant in [0.0, 0.7, 3.3] {
+        write("stuck.csv", Some(constant));
+        let (answer, estimates, stuck_r2) = fit("stuck.csv");
+        answer.says("VP2 is constant: it determines nothing, and is left out");
+        assert_eq!((estimates, stuck_r2), (alone.clone(), r2.clone()), "{constant} V");
+    }
+    // In one of two recordings alone, the other one's is used.
+    let (answer, two, _) = fit("good.csv stuck.csv");
+    answer.says("stuck.csv: VP2 is constant");
+    assert_ne!(two, alone);
+    let mut dead = "pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+    for row in &rows {
+        dead += &format!("{},{},0,3.3\n", row["pf1_Pa"], row["pf2_Pa"]);
+    }
+    dir.write("dead.csv", dead);
+    let refused = run(&dir, "fit", "good.csv dead.csv --free k_C --out g.json").expect(2).stderr;
+    assert!(refused.contains("every photodiode is constant (VP1, VP2)"), "{refused}");
 }
 
 /// A recorded response as a log with an LED that goes on and off: unlit rows hold the room's light alone. Rows of this

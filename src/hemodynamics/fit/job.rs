@@ -62,7 +62,10 @@ fn ready(inputs: &FitInputs, options: &FitOptions) -> Result<Ready, Hemodynamics
     let mut recordings: Vec<ReadRecording> = recordings;
     photodiodes::all_there(named, &recordings)?;
     photodiodes::note_lacking(&mut recordings);
-    let known = |name: &String| recordings.iter().any(|read| read.photodiodes.contains(name));
+    let has = |read: &ReadRecording, name: &String| {
+        read.photodiodes.contains(name) || read.constant.iter().any(|one| one.name == *name)
+    };
+    let known = |name: &String| recordings.iter().any(|read| has(read, name));
     if let Some((name, _)) = options.noise.iter().find(|(name, _)| !known(name)) {
         return Err(HemodynamicsError::Options(vec![format!("--noise {name}: no recording has this photodiode")]));
     }
@@ -260,12 +263,11 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
         let voltages = traces.map(|(name, trace)| (name.as_str(), &trace.voltages_v[..]));
         let by_turns = read.times_s.is_some().then(|| alternating(voltages)).flatten();
         warnings.extend(by_turns.map(|doubt| format!("{}: {doubt}", read.name)));
-        for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {
-            let mut known = trace.voltages_v.iter().filter(|value| value.is_finite());
-            if known.next().is_some_and(|first| known.all(|value| value == first)) {
-                warnings.push(format!("{}: {name} is constant: it determines nothing", read.name));
-            }
-        }
+        warnings.extend(
+            read.constant
+                .iter()
+                .map(|one| format!("{}: {} is constant: it determines nothing, and is left out", read.name, one.name)),
+        );
     }
     warnings
 }

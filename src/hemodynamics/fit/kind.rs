@@ -48,7 +48,7 @@ impl Job for FitOptions {
                 Part::pictures(""),
             ],
         )
-        .revision(6)
+        .revision(7)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

@@ -97,6 +97,8 @@ pub(super) struct ReadRecording {
     pub(super) recording: Recording,
     /// The photodiodes' names, as the traces of the recording.
     pub(super) photodiodes: Vec<String>,
+    /// Photodiodes that are left out, as they are constant.
+    pub(super) constant: Vec<PhotodiodeColumn>,
     /// Samples' times, s, of a log the first row's among them; none of a static one.
     pub(super) times_s: Option<Vec<f64>>,
     /// `[P_F1, P_F2]` of each sample, Pa.
@@ -142,18 +144,29 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         }
     }
     let mut pressed_pa = pressed(&read, force.as_ref());
-    let photodiodes = photodiodes::of(names, &columns.photodiodes, units).map_err(refused)?;
+    let (mut photodiodes, mut constant) = (Vec::new(), Vec::new());
     let mut traces = Vec::new();
     let (mut missing, mut faults) = (0, 0);
     let (mut unknown, mut of_photodiodes) = (None, Vec::new());
-    for one in &photodiodes {
+    for one in photodiodes::of(names, &columns.photodiodes, units).map_err(refused)? {
         let voltages = rows.voltages(&one.name)?;
+        if photodiodes::is_constant(&voltages.values_v) {
+            constant.push(one);
+            continue;
+        }
         faults += voltages.faults;
         missing += voltages.values_v.iter().filter(|value| value.is_nan()).count() - voltages.faults;
         // The same rows for every photodiode.
         unknown = voltages.warning;
         of_photodiodes.extend(doubts::cut_off(&one.name, &voltages.values_v));
         traces.push(Trace::new(one.unit, voltages.values_v));
+        photodiodes.push(one);
+    }
+    if photodiodes.is_empty() {
+        return Err(refused(format!(
+            "every photodiode is constant ({}): it determines nothing; leave the recording out",
+            photodiodes::in_words(&constant)
+        )));
     }
     let mut times_s = read.get(TIME).map(<[f64]>::to_vec);
     let course = match &mut times_s {
@@ -221,6 +234,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         recording: Recording { course, photodiodes: traces, subject: None },
         name,
         photodiodes: photodiodes.into_iter().map(|one| one.name).collect(),
+        constant,
         times_s,
         pressed_pa,
         missing,

@@ -60,6 +60,20 @@ pub(super) fn of(names: &[String], named: &[PhotodiodeColumn], units: usize) -> 
     Ok(own)
 }
 
+/// Whether a photodiode is the same wherever it is known, in two samples or more: stuck at a rail, or dead. Whatever is
+/// fitted to it, its offset leaves no residual, and its noise would be what rounding leaves of its mean.
+pub(super) fn is_constant(voltages_v: &[f64]) -> bool {
+    let mut known = voltages_v.iter().filter(|value| value.is_finite());
+    let first = known.next();
+    let mut others = known.peekable();
+    others.peek().is_some() && others.all(|value| Some(value) == first)
+}
+
+/// Their names.
+pub(super) fn in_words(photodiodes: &[PhotodiodeColumn]) -> String {
+    photodiodes.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
 /// Refuses a column that is named twice: it is one photodiode, above one unit.
 ///
 /// # Errors
@@ -107,7 +121,9 @@ pub(in crate::hemodynamics::fit) fn note_lacking(recordings: &mut [ReadRecording
         }
     }
     for read in recordings {
-        let units: Vec<usize> = read.recording.photodiodes.iter().map(|trace| trace.unit).collect();
+        // Of a constant one a warning says that it is left out.
+        let constant = read.constant.iter().map(|one| one.unit);
+        let units: Vec<usize> = read.recording.photodiodes.iter().map(|trace| trace.unit).chain(constant).collect();
         let lacking = all.iter().filter(|(_, unit)| !units.contains(unit)).map(|(name, _)| name.as_str());
         let lacking: Vec<&str> = lacking.collect();
         if !lacking.is_empty() {
