@@ -5,12 +5,17 @@
 //! the first. Errors on such rows are those on rows that the model has seen, and intervals from them hold too little.
 //!
 //! A row is compared with what lies about its time in the other recording, linear in between, in units of what each of
-//! that one's own rows is off its neighbours. Measured on phantom logs of touch: every other row is 0.8 to 1.0 of that
-//! off; a repetition by the same person, from the same time on, 6 and more. On another clock only the same rows are
-//! parts, whatever digits they were rounded to: where some rows of the one are in the other says how far it is ahead.
+//! that one's own rows is off its neighbours. On another clock only the same rows are parts, whatever digits they were
+//! rounded to: where some rows of the one are in the other says how far it is ahead.
+//!
+//! Noise widens these units, and a repetition by the same person hides in it. Noise goes out of means of rows, and
+//! labels have little of it: rows between another's are a part where both are as near. Measured on phantoms of touch and
+//! bending, lit rows at 2.5 to 30 Hz, noise of up to 20 mV and hum: where photodiodes of repetitions are 0.4 to 1.5 of
+//! that off, labels or means are 1.5 and more, except where labels are sampled sparsely ([`DENSE`]).
 
 use std::ops::Range;
 
+use ndarray::{ArrayView1, ArrayView2, Axis, Slice};
 use rayon::prelude::*;
 
 use super::path::Between;
@@ -26,8 +31,16 @@ const GAP: f64 = 2.5;
 /// other at most (assumed; the head says what was measured).
 const SHARED: f64 = 0.5;
 const TIMES: f64 = 1.5;
+/// So are means of so many rows in a row, out of which noise goes and in which another path stays; of so many means
+/// (assumed).
+const MEANS: [usize; 3] = [4, 16, 64];
+const LEAST_MEANS: usize = 12;
 /// A column says something that goes so many times as far as its rows are off each other.
 const MOVES: f64 = 5.0;
+/// Labels tell repetitions from parts where one of them goes more than so many times as far as its rows are off each
+/// other. Sampled more sparsely, angles of phantoms' repetitions lay between each other's rows: at 5 and 6 Hz in 24 of
+/// 24 pairs, where no angle went more than 14.7 times as far.
+const DENSE: f64 = 16.0;
 /// What rounding leaves, as a share of how far a column goes.
 const ROUNDING: f64 = 1e-9;
 /// The same rows are no further off each other than by this (assumed: digits that were cut off), where so many of some
@@ -63,8 +76,19 @@ pub fn shared_within(data: &Dataset) -> Vec<(usize, usize)> {
 }
 
 fn is_part(sets: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
-    is_part_ahead(sets, rows, 0.0, TIMES)
-        || ahead_s(sets, rows).is_some_and(|ahead_s| is_part_ahead(sets, rows, ahead_s, SAME))
+    // Rows between those of the other one have labels between its labels, too; the same rows may be labelled again.
+    let is_same = |off: &Off| off.voltages == 0.0 || off.voltages <= SAME && off.labels <= TIMES;
+    let is_between = |off: &Off| off.voltages.max(off.means).max(off.labels) <= TIMES;
+    off_ahead(sets, rows, 0.0).is_some_and(|off| is_same(&off) || is_between(&off))
+        || ahead_s(sets, rows).and_then(|ahead_s| off_ahead(sets, rows, ahead_s)).is_some_and(|off| is_same(&off))
+}
+
+/// How far rows are off another recording's, in units of what that one's rows are off each other: the worst of
+/// photodiodes, means of rows over all photodiodes, and the worst of labels.
+struct Off {
+    voltages: f64,
+    means: f64,
+    labels: f64,
 }
 
 /// How far the clock of `train` seems to be ahead of that of `held`, by the rows that are nearest to some of it.
@@ -95,14 +119,14 @@ fn ahead_s([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> Option<f64
     Some(all[PROBES / 2]).filter(|middle| *middle != 0.0)
 }
 
-/// Whether it is, where the clock of the first is so far ahead, and rows may be so many times as far off.
-fn is_part_ahead([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2], ahead_s: f64, most: f64) -> bool {
+/// Nothing where few rows lie about the other's, where no photodiode moves, and where one is too far off.
+fn off_ahead([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2], ahead_s: f64) -> Option<Off> {
     let times = &train.time_s()[rows[0].clone()];
     let moments: Vec<f64> = held.time_s()[rows[1].clone()].iter().map(|time_s| time_s + ahead_s).collect();
     let ascends =
         |times: &[f64]| times.windows(2).all(|pair| pair[0] <= pair[1]) && times.iter().all(|t| t.is_finite());
     if times.len().min(moments.len()) < ROWS || !ascends(times) || !ascends(&moments) {
-        return false;
+        return None;
     }
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
@@ -116,26 +140,81 @@ fn is_part_ahead([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2], ahead_s
     let looked: Vec<usize> = (0..moments.len()).step_by(moments.len().div_ceil(MOMENTS)).collect();
     let about: Vec<usize> = looked.iter().filter(within).copied().collect();
     if (about.len() as f64) < SHARED * looked.len() as f64 {
-        return false;
+        return None;
     }
     let between: Vec<Between> = Between::rows(times, about.iter().map(|&row| moments[row])).collect();
-    let (mut moving, mut alike) = (0, 0);
-    for column in 0..train.inputs().len() {
-        let own = |row: usize| train.x()[[rows[0].start + row, column]];
+    let all = |columns: [ArrayView2<'_, f64>; 2]| -> Vec<Compared> {
+        let of = |column: usize| {
+            let own = |row: usize| columns[0][[rows[0].start + row, column]];
+            let there = |(&row, at): (&usize, &Between)| columns[1][[rows[1].start + row, column]] - at.value(own);
+            Compared::new(times, own, about.iter().zip(&between).map(there).collect())
+        };
+        (0..columns[0].ncols()).filter_map(of).collect()
+    };
+    let photodiodes = all([train.x().view(), held.x().view()]);
+    let voltages = worst(&photodiodes);
+    if photodiodes.is_empty() || voltages > TIMES {
+        return None;
+    }
+    let means = MEANS.iter().map(|&rows| rms(photodiodes.iter().filter_map(|one| one.means(rows))));
+    let means = means.filter(|times| !times.is_nan()).fold(0.0, f64::max);
+    let same_targets = train.targets() == held.targets();
+    let labels = if same_targets { all([train.y().view(), held.y().view()]) } else { Vec::new() };
+    let moves = |column: ArrayView1<'_, f64>| column.iter().any(|value| *value != column[0]);
+    let some_move =
+        same_targets && train.y().slice_axis(Axis(0), Slice::from(rows[0].clone())).axis_iter(Axis(1)).any(moves);
+    let sparse = some_move && !labels.iter().any(|one| one.goes > DENSE * rms(one.own.iter().copied()));
+    let labels = if sparse { f64::INFINITY } else { worst(&labels) };
+    Some(Off { voltages, means, labels })
+}
+
+/// The column that is furthest off.
+fn worst(columns: &[Compared]) -> f64 {
+    columns.iter().map(Compared::rows).fold(0.0, f64::max)
+}
+
+/// A column that says something: how far rows are off the other recording, and how far that one's are off each other.
+struct Compared {
+    there: Vec<f64>,
+    own: Vec<f64>,
+    goes: f64,
+}
+
+impl Compared {
+    fn new(times: &[f64], own: impl Fn(usize) -> f64, there: Vec<f64>) -> Option<Self> {
         let values: Vec<f64> = (0..times.len()).map(own).collect();
         let middle = mean(values.iter().copied());
         let goes = rms(values.iter().map(|value| value - middle));
-        let off = rms((1..times.len() - 1).filter(|&k| times[k + 1] > times[k - 1]).map(|k| {
+        let inner = (1..times.len() - 1).filter(|&k| times[k + 1] > times[k - 1]);
+        let own = inner.map(|k| {
             let share = (times[k] - times[k - 1]) / (times[k + 1] - times[k - 1]);
             values[k] - values[k - 1] - share * (values[k + 1] - values[k - 1])
-        }));
-        if goes > 0.0 && goes > MOVES * off {
-            let there = |(&row, at): (&usize, &Between)| held.x()[[rows[1].start + row, column]] - at.value(own);
-            moving += 1;
-            alike += usize::from(rms(about.iter().zip(&between).map(there)) <= most * off + ROUNDING * goes);
-        }
+        });
+        let own: Vec<f64> = own.collect();
+        let moves = goes > 0.0 && goes > MOVES * rms(own.iter().copied());
+        moves.then_some(Self { there, own, goes })
     }
-    moving > 0 && alike == moving
+
+    /// How many times as far rows are off.
+    fn rows(&self) -> f64 {
+        self.times(rms(self.there.iter().copied()), rms(self.own.iter().copied()))
+    }
+
+    /// The same of means of so many rows in a row, where there are enough.
+    fn means(&self, rows: usize) -> Option<f64> {
+        // Every other row between those that are left, as a part's would be: means of all rows would hold little noise,
+        // as each row's is taken away again by its neighbours.
+        let odd: Vec<f64> = self.own.iter().copied().step_by(2).collect();
+        let of = |off: &[f64]| rms(off.chunks_exact(rows).map(|chunk| mean(chunk.iter().copied())));
+        let enough = self.there.len().min(odd.len()) >= LEAST_MEANS * rows;
+        enough.then(|| self.times(of(&self.there), of(&odd)))
+    }
+
+    fn times(&self, there: f64, own: f64) -> f64 {
+        let least = ROUNDING * self.goes;
+        let times = if there <= least { 0.0 } else { (there - least) / own };
+        if times.is_nan() { f64::INFINITY } else { times }
+    }
 }
 
 #[cfg(test)]
@@ -154,6 +233,15 @@ mod tests {
         });
         let (inputs, one) = (["P1", "P2"].map(str::to_owned).to_vec(), vec![Recording::of("r", 0..n)]);
         Dataset::new(inputs, vec!["F".into()], times.to_vec(), x, Array2::zeros((n, 1)), one).unwrap()
+    }
+
+    /// The same with ten times the noise, and a label.
+    fn noisy(times: &[f64], seed: usize, value: impl Fn(f64) -> f64, label: impl Fn(f64) -> f64) -> Dataset {
+        let of = set(times, seed, |t| 0.1 * value(t));
+        let y = Array2::from_shape_fn((times.len(), 1), |(row, _)| label(times[row]));
+        let x = of.x().mapv(|value| 10.0 * value);
+        Dataset::new(of.inputs().to_vec(), of.targets().to_vec(), times.to_vec(), x, y, of.recordings().to_vec())
+            .unwrap()
     }
 
     fn spiral(t: f64) -> f64 {
@@ -191,5 +279,24 @@ mod tests {
         assert_eq!(shared(&rest, &rest.clone()), []);
         let unknown = set(&[f64::NAN; 100], 1, |_| 1.0);
         assert_eq!(shared(&unknown, &unknown.clone()), []);
+    }
+
+    #[test]
+    fn repetitions_in_noise_are_no_parts_and_parts_in_noise_are() {
+        let all: Vec<f64> = (0..1000).map(|k| 0.04 * f64::from(k)).collect();
+        let [even, odd] = [0, 1].map(|from| all.iter().copied().skip(from).step_by(2).collect::<Vec<f64>>());
+        let whole = noisy(&all, 1, spiral, spiral);
+        let another = |t: f64| spiral(t) + 0.015 * (0.4 * t).cos();
+        // Noise hides where another went otherwise; it does not hide it from means of rows, nor from labels.
+        for (value, label) in [(&another as &dyn Fn(f64) -> f64, &spiral as &dyn Fn(f64) -> f64), (&spiral, &another)] {
+            let again = noisy(&all, 2, value, label);
+            let off = off_ahead([&whole, &again], [&(0..1000), &(0..1000)], 0.0).unwrap();
+            assert!(off.voltages < TIMES && (off.means > TIMES || off.labels > TIMES));
+            assert_eq!(shared(&whole, &again), []);
+        }
+        assert_eq!(shared(&noisy(&even, 1, spiral, spiral), &noisy(&odd, 1, spiral, spiral)), [(0, 0)]);
+        assert_eq!(shared(&whole, &noisy(&odd, 1, spiral, spiral)), [(0, 0)]);
+        // The same rows, labelled again.
+        assert_eq!(shared(&whole, &noisy(&odd, 1, spiral, another)), [(0, 0)]);
     }
 }
