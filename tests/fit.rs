@@ -415,7 +415,7 @@ fn a_constant_photodiode_changes_nothing_of_the_fit_of_the_others() {
     write("good.csv", None);
     let fit = |options: &str| {
         let answer = run(&dir, "fit", &format!("{options} --free k_C,b_C --out f.json --no-figures"));
-        (answer.expect(0), std::fs::read(dir.path("f-estimates.csv")).unwrap(), dir.json("f.json")["r2"].clone())
+        (answer.expect(0), std::fs::read(dir.path("f-estimates.csv")).unwrap(), dir.parsed("f.json")["r2"].clone())
     };
     let (_, alone, r2) = fit("good.csv --photodiode VP1=1");
     for constant in [0.0, 0.7, 3.3] {

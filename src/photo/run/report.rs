@@ -487,7 +487,7 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
     let mut warnings = doubts_of_sums(partials);
     let poses_of = || partials.poses.iter();
     warnings.extend(pose::doubts(|| {
-        poses_of().flat_map(|(pose, sums)| sums.subjects().into_iter().map(move |subject| (pose.as_str(), subject)))
+        poses_of().flat_map(|(pose, sums)| sums.subjects().map(move |subject| (pose.as_str(), subject)))
     }));
     Report { left_out, warnings, notes, ..Report::new("photos merge", watch, figures) }
 }
