@@ -121,12 +121,16 @@ fn what_recordings_do_not_determine_is_said() {
     let dir = Dir::new();
     let mut constant = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
     for k in 0..50 {
-        constant += &format!("{},0,0,0.9,0.8\n", f64::from(k) * 0.02);
+        constant += &format!("{},0,0,0.900{},0.8\n", f64::from(k) * 0.02, k % 3);
     }
-    dir.write("constant.csv", constant);
+    // Loads that don't change.
+    dir.write("constant.csv", &constant);
     let report = run(&dir, "fit", "constant.csv --free b_C --out f.json --json").expect(0).json();
     assert_eq!(report["free"][0]["identifiable"], false);
-    assert!(report["free"][0]["standard_errors"].is_null() && report["r2"].is_null());
+    assert!(report["free"][0]["standard_errors"].is_null());
+    // Nor photodiodes that do.
+    dir.write("still.csv", constant.replace("0.9001,", "0.9000,").replace("0.9002,", "0.9000,"));
+    run(&dir, "fit", "still.csv --free b_C --out s.json").expect(2).says("every photodiode is constant (VP1, VP2)");
     assert!(!report["not_identifiable"].list().is_empty());
     assert!(report["warnings"].to_string().contains("b_C1_N_s_per_m"), "{}", report["warnings"]);
     run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=3000 --out r.csv")).expect(0);
@@ -180,7 +184,7 @@ fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
 fn bad_requests_are_refused_whole() {
     let dir = Dir::new();
     run(&dir, "simulate", &format!("{STEPS} --out r.csv")).expect(0);
-    dir.write("short.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,0,0,0.9\n");
+    dir.write("short.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,0,0,0.8\n");
     dir.write("bad.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,,0,0.9\n0.5,nan,0,0.9\n");
     dir.write("volts.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,0,0,inf\n");
     dir.write("names.csv", "time_s,pf1_Pa,pf2_Pa,P1\n0,0,0,0.9\n");

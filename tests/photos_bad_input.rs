@@ -630,7 +630,7 @@ fn outlines_of_no_photograph_and_drawn_nails_left_out_are_said() {
     dir.write("set/normal/a.json", labelme(size.into(), &nails));
     dir.lunula(&job).expect(0).says(
         "warning: 1 drawn nail(s) are left out, others of their photographs being used: normal/x.png, nail 2 first: \
-         shape 3 is a rectangle labelled nail",
+         a.json: shape 3 is a rectangle labelled nail",
     );
 }
 

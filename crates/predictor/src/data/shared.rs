@@ -9,9 +9,9 @@
 //! rounded to: where some rows of the one are in the other says how far it is ahead.
 //!
 //! Noise widens these units, and a repetition by the same person hides in it. Noise goes out of means of rows, and
-//! labels have little of it: rows between another's are a part where both are as near. Measured on phantoms of touch and
-//! bending, lit rows at 2.5 to 30 Hz, noise of up to 20 mV and hum: where photodiodes of repetitions are 0.4 to 1.5 of
-//! that off, labels or means are 1.5 and more, except where labels are sampled sparsely ([`DENSE`]).
+//! labels have little of it: rows between another's are a part where both are as near. Measured on phantoms of touch
+//! and bending, lit rows at 2.5 to 30 Hz, noise of up to 20 mV and hum: where photodiodes of repetitions are 0.4 to 1.5
+//! of that off, labels or means are 1.5 and more, except where labels are sampled sparsely ([`DENSE`]).
 
 use std::ops::Range;
 
