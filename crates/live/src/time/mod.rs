@@ -10,6 +10,8 @@ mod period;
 mod resolution;
 mod sequence;
 #[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
 mod tests;
 mod unwrap;
 

@@ -1,5 +1,6 @@
 //! Samples in sequence: lost, late, repeated, and clocks that were set.
 
+use super::testing::Taker;
 use super::*;
 use crate::wire::{Meaning, Sample, Use};
 
@@ -106,25 +107,9 @@ fn late_rows_are_dropped_and_seventeen_are_a_clock_that_was_set() {
     assert_eq!((counts.disorder, counts.set_back), (17, 1));
 }
 
-/// Takes samples as a stream does, which holds back those that are doubtful.
-#[derive(Default)]
-struct Taker {
-    held: Option<(Sample, u64)>,
-}
-
-impl Taker {
-    /// Takes a sample, which the one that was held back may come before.
-    fn take(&mut self, rows: &mut Sequence, next: Sample, host_ns: u64) -> Vec<(f64, u64, bool)> {
-        let first = self.held.take().filter(|_| rows.settle(&next));
-        let mut given = Vec::new();
-        for (sample, host_ns) in first.into_iter().chain([(next, host_ns)]) {
-            match rows.take(&sample, host_ns) {
-                Verdict::Doubtful => self.held = Some((sample, host_ns)),
-                verdict => given.push(row(verdict)),
-            }
-        }
-        given
-    }
+/// Times, lost rows and whether a recording begins, of the rows that a sample gives.
+fn taken(taker: &mut Taker, rows: &mut Sequence, next: Sample, host_ns: u64) -> Vec<(f64, u64, bool)> {
+    taker.take(rows, next, host_ns).into_iter().map(|(_, verdict)| row(verdict)).collect()
 }
 
 #[test]
@@ -136,7 +121,7 @@ fn a_clock_that_leaps_is_believed_when_a_second_row_agrees() {
     {
         let what = format!("{link:?} {counted} {leap_ms}");
         let (mut rows, mut taker) = (clocked(counted, link), Taker::default());
-        let mut take = |time: f64, n: u64| taker.take(&mut rows, sample(time, counted.then_some(n)), n * MS);
+        let mut take = |time: f64, n: u64| taken(&mut taker, &mut rows, sample(time, counted.then_some(n)), n * MS);
         for n in 0..5000 {
             take(n as f64, n);
         }
@@ -182,7 +167,8 @@ fn a_damaged_count_costs_its_row_and_leaves_the_clock() {
         for damaged in [7, 2_000_000] {
             let (mut rows, mut taker) = (clocked(true, link), Taker::default());
             for n in 0..5000 {
-                let given = taker.take(&mut rows, sample(n as f64, Some(if n == 3000 { damaged } else { n })), n * MS);
+                let given =
+                    taken(&mut taker, &mut rows, sample(n as f64, Some(if n == 3000 { damaged } else { n })), n * MS);
                 let lost = u64::from(n == 3001);
                 let expected = if n == 3000 { vec![] } else { vec![(n as f64 / 1e3, lost, n == 0)] };
                 assert_eq!(given, expected, "{link:?} {damaged}");
@@ -193,10 +179,10 @@ fn a_damaged_count_costs_its_row_and_leaves_the_clock() {
     // A counter that begins again, and one that counts something else.
     let (mut rows, mut taker) = (clocked(true, Link::Device), Taker::default());
     let given: Vec<_> =
-        (0..2000).flat_map(|n| taker.take(&mut rows, sample(n as f64, Some(n % 1000)), n * MS)).collect();
+        (0..2000).flat_map(|n| taken(&mut taker, &mut rows, sample(n as f64, Some(n % 1000)), n * MS)).collect();
     assert_eq!((given.len(), given[1000], given[1999]), (2000, (1.0, 0, true), (1.999, 0, false)));
     let (mut rows, mut taker) = (clocked(true, Link::Recording), Taker::default());
-    let given: usize = (0..1001).map(|n| taker.take(&mut rows, sample(n as f64, Some(n * 100)), 0).len()).sum();
+    let given: usize = (0..1001).map(|n| taken(&mut taker, &mut rows, sample(n as f64, Some(n * 100)), 0).len()).sum();
     assert!(given >= 1000 && rows.counts().doubtful == 0 && rows.counts().set_back == 0, "{given}");
 }
 

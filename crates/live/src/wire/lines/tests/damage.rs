@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::time::testing::Taker;
 use crate::time::{Link, Sequence, Verdict};
 
 const STREAM: &str = "\u{feff}# made by hand\r\ntime_us,n,led,P1,P2\r\n0,1,1,0.5,\"7\"\r\n\n1000,2,0,,1e3\n2000,3\n\
@@ -107,7 +108,7 @@ fn outcome(streams: u32, seal: impl Fn(&str) -> String, damage: Damage) -> Outco
             stream.extend(line);
         }
         let mut decoder = lines(LineOptions::default());
-        let (mut sequence, mut last) = (None, begin);
+        let (mut sequence, mut taker, mut last) = (None, Taker::default(), begin);
         let mut rest = &stream[..];
         while let Some(step) = decoder.next(&mut rest, 0).unwrap() {
             match step {
@@ -124,12 +125,12 @@ fn outcome(streams: u32, seal: impl Fn(&str) -> String, damage: Damage) -> Outco
                         all.wrong += 1;
                         continue;
                     }
-                    let Verdict::Row { lost, .. } = sequence.as_mut().unwrap().take(&sample, 0) else {
-                        panic!("row {n} is late")
-                    };
-                    all.rows += 1;
-                    all.lost += lost;
-                    last = n;
+                    for (sample, verdict) in taker.take(sequence.as_mut().unwrap(), sample, 0) {
+                        let Verdict::Row { lost, .. } = verdict else { panic!("row {n} is late") };
+                        all.rows += 1;
+                        all.lost += lost;
+                        last = sample.counter.unwrap_or(last);
+                    }
                 }
                 Step::Spoilt(_) => {}
             }
