@@ -78,6 +78,9 @@ pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Resul
 /// Lets time go on where 32 bits of microseconds begin again: it falls back by a turn, but for at most as many steps as
 /// late rows reach back.
 fn unwrap(raw: &mut Raw, rows: &[usize]) {
+    if !rows.windows(2).any(|pair| raw.time_s[pair[1]] - raw.time_s[pair[0]] < -TURN_S / 2.0) {
+        return;
+    }
     let time_s: Vec<f64> = rows.iter().map(|&row| raw.time_s[row]).collect();
     let Some(step_s) = median_step_s(&time_s) else { return };
     let near_s = LATE_ROWS as f64 * step_s;

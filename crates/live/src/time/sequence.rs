@@ -199,11 +199,9 @@ impl Sequence {
     /// Whether the sample behind a doubtful one agrees with it, so that the doubtful one is right and is to be taken
     /// again, first; otherwise it is dropped.
     pub fn settle(&mut self, next: &Sample) -> bool {
-        self.trusted = self.doubt.is_some_and(|doubt| doubt.is_confirmed_by(next));
-        if self.trusted {
-            self.doubt = None;
-        }
-        self.drop_doubtful();
+        let doubt = self.doubt.take();
+        self.trusted = doubt.is_some_and(|doubt| doubt.is_confirmed_by(next));
+        self.counts.doubtful += u64::from(doubt.is_some() && !self.trusted);
         self.trusted
     }
 

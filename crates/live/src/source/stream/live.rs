@@ -295,7 +295,6 @@ impl Stream {
         let within = live.within;
         if live.lose() {
             self.decoder.cut(within);
-            self.held.doubtful();
             if let Some(sequence) = &mut self.sequence {
                 sequence.come_back();
             }

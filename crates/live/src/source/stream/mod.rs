@@ -347,7 +347,6 @@ impl Stream {
     /// The columns are known.
     fn columns(&mut self, again: bool, on: &mut Sink<'_>) -> Result<(), SourceFault> {
         if again && let Some(sequence) = &mut self.sequence {
-            self.held.doubtful();
             sequence.begin();
             return Ok(());
         }
@@ -376,7 +375,7 @@ impl Stream {
     }
 
     /// Judges the row that is held back, if there is one, by the one that came behind it. Where it is right it takes
-    /// the decoder's place, and is given with when it came.
+    /// the decoder's place, and is given with when it came; where a recording began meanwhile it isn't.
     fn judge(&mut self, next: &Sample) -> Option<(Sample, u64)> {
         let first = self.held.doubtful()?;
         if !self.sequence.as_mut()?.settle(next) {

@@ -104,7 +104,6 @@ impl Stream {
             }
             (None, _) => return Ok(false),
         }
-        self.held.doubtful();
         if let Some(sequence) = &mut self.sequence {
             sequence.begin();
         }
