@@ -41,6 +41,13 @@ pub fn fixed(value: f64, places: usize) -> String {
     }
 }
 
+/// What to add to the refusal of a number that has a decimal comma: one that stands in quotes, between commas.
+#[must_use]
+pub(crate) fn decimal_comma(text: &str) -> &'static str {
+    let is_number = text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok();
+    if is_number { " (where commas part the cells, a decimal has a point)" } else { "" }
+}
+
 /// The known name from which `name` differs by a slip of the finger: a letter, or one in three.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {

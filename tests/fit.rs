@@ -97,6 +97,44 @@ fn every_subject_has_photodiodes_of_its_own() {
 }
 
 #[test]
+fn persons_and_recordings_that_differ_are_named() {
+    let dir = Dir::new();
+    for (name, k) in [("a", "7e4"), ("b", "1.3e5"), ("c", "7e4")] {
+        let k = format!("--set k_C1_N_per_m={k} --set k_C2_N_per_m={k}");
+        run(&dir, "simulate", &format!("{STEPS} {k} --until 4 --out {name}.csv")).expect(0);
+    }
+    let text = dir.text("c.csv");
+    let lines: Vec<&str> = text.lines().collect();
+    let places: Vec<usize> =
+        lines[0].split(',').enumerate().filter(|(_, name)| name.starts_with("VP")).map(|(k, _)| k).collect();
+    let in_mv = lines[1..].iter().map(|line| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        for &k in &places {
+            cells[k] = (1e3 * cells[k].parse::<f64>().expect("a voltage")).to_string();
+        }
+        cells.join(",") + "\n"
+    });
+    dir.write("mv.csv", format!("{}\n{}", lines[0], in_mv.collect::<String>()));
+    let fit = |of: &str| {
+        let options = format!("{of} --free k_C,b_C --between held --unloaded-before --out f.json --no-figures");
+        run(&dir, "fit", &options).expect(0)
+    };
+    let differ = "one value for both doesn't hold";
+    let persons = fit("a.csv b.csv --subject anna,ben");
+    persons.says("k_C1_N_per_m is 7.0").says("by anna alone and 1.30").says("by ben alone").says(differ);
+    let fitted: serde_json::Value = serde_json::from_str(&dir.text("f.json")).expect("a result");
+    let alone = &fitted["alone"];
+    let k = |part: usize| alone[part]["free"][0]["values"][0].as_f64().expect("a value");
+    assert!((k(0) / 7e4 - 1.0).abs() < 0.01 && (k(1) / 1.3e5 - 1.0).abs() < 0.01, "{alone}");
+    fit("a.csv b.csv").says("by a.csv alone and").says(differ);
+    fit("a.csv c.csv").never_says(differ).never_says("in another unit");
+    fit("a.csv c.csv --subject anna,ben").never_says(differ);
+    fit("a.csv mv.csv").says("V1_1_V is").says("in another unit, or put on again?").never_says(differ);
+    fit("a.csv mv.csv --calibrate recording").never_says("in another unit").never_says(differ);
+    fit("a.csv").never_says("alone");
+}
+
+#[test]
 fn a_log_of_forces_and_photodiodes_of_other_names_is_read() {
     // Measured 2.2e-16.
     const NEAR: f64 = 1e-12;

@@ -155,6 +155,15 @@ fn a_column_that_hangs_is_warned_of() {
     hangs(100.0, 112.0, 10..13, Some("0")).never_says("did it hang");
     hangs(100.0, 112.0, 10..13, Some("-0.01")).never_says("did it hang");
     hangs(100.0, 100.6, 10..13, None).never_says("did it hang");
+    // Throughout one of two recordings, as where a 0 was written for what was not recorded.
+    phantom(&dir, ["1", "2", "4"], "touch-random", "nail", "b");
+    let beside = |which: std::ops::Range<usize>| {
+        write_changed(&dir, "b/log.csv", "b.csv", &move |cells| cells[which.clone()].fill("0".to_owned()));
+        dir.lunula(&["train", "a/log.csv", "b.csv", "--target", "force", "--out", "m.json"]).expect(0)
+    };
+    beside(0..0).never_says("was it recorded?");
+    beside(12..13).says("b.csv: Fz_N (0) is the same in all ").says("Leave cells empty that were not");
+    beside(10..13).says("b.csv: Fx_N (0), Fy_N (0), Fz_N (0) is the same in all ");
 }
 
 /// A transducer that was mounted turned, another person's log, one that lost the LED's column; and a trade-off that is

@@ -23,8 +23,8 @@ pub use choices::{OpticsChoice, Pressed};
 pub use curve::{CurveFigures, CurveOptions, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, curve, curve_plan};
 pub use error::HemodynamicsError;
 pub use fit::{
-    Between, FitFigures, FitInputs, FitOptions, FitReport, FittedPhotodiode, PhotodiodeColumn, RecordingColumns,
-    RecordingReport, fit, fit_plan, own_parameters, voltages,
+    Between, FitAlone, FitFigures, FitInputs, FitOptions, FitReport, FittedPhotodiode, PhotodiodeColumn,
+    RecordingColumns, RecordingReport, fit, fit_plan, own_parameters, voltages,
 };
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use response::Response;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::cells::CsvCells;
 use super::{TableError, TableFormat, csv, parquet};
+use crate::words::decimal_comma;
 
 /// A table that was read.
 ///
@@ -178,8 +179,10 @@ impl Table {
     }
 
     fn numbers_where(&self, name: &str, allowed: fn(f64) -> bool) -> Result<Vec<Option<f64>>, TableError> {
-        const WHAT: &str = "is no finite number; correct it or leave it empty";
-        let bad = |row: usize, shown: String| Err(self.cell(row, name, format!("`{shown}` {WHAT}")));
+        let bad = |row: usize, shown: String| {
+            let what = format!("`{shown}` is no finite number{}; correct it or leave it empty", decimal_comma(&shown));
+            Err(self.cell(row, name, what))
+        };
         let mut numbers = Vec::with_capacity(self.rows);
         self.each_cell(name, |row, cell| {
             numbers.push(match cell {

@@ -187,6 +187,8 @@ fn other_delimiters_decimal_commas_and_line_ends_are_read() {
     let said = read_text(b"a;b\r1,5;2\rx;3\r").unwrap().numbers("a").unwrap_err().to_string();
     assert!(said.contains(":3: column `a`"), "{said}");
     assert!(read_text(b"a,b;c\n1,5;2\n").unwrap().numbers("b;c").is_err());
+    let said = read_text(b"a,b\n\"1,5\",2\n").unwrap().numbers("a").unwrap_err().to_string();
+    assert!(said.contains("`1,5` is no finite number (where commas part the cells, a decimal has a point)"), "{said}");
     assert_eq!(read_text(b"a;b;name, first\n1,5;2;x\n").unwrap().numbers("a").unwrap(), [Some(1.5)]);
 }
 

@@ -5,6 +5,9 @@
 //! Frames and coordinates are those of the *stored* picture; [`Turn`] leads from there to the picture as it is shown
 //! (upright). The centre of the top-left sample of the luma is (0, 0), x to the right, y down.
 
+/// Endings of films, in lower case.
+pub(crate) const FILMS: [&str; 6] = ["mp4", "mov", "avi", "mkv", "m4v", "webm"];
+
 mod colour;
 mod error;
 mod frame;

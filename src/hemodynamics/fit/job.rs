@@ -7,10 +7,11 @@ use lunula_hemodynamics::{
     Calibration, Delay, FitOptions as Settings, FitResult, Free, Parameters, Recording, fit as search,
 };
 
-use super::parameter_files::{parameter_files, parameter_paths};
 use super::recording::{ReadRecording, photodiodes, read, signs};
 use super::report::{FitFigures, FitReport, FittedPhotodiode, RecordingReport, noises, result_text, stopped};
-use super::{FitInputs, FitOptions, estimates, figure, fitted, noise};
+use super::results::parameter_files::{parameter_files, parameter_paths};
+use super::results::{estimates, figure};
+use super::{FitInputs, FitOptions, alone, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::input::copies;
@@ -18,6 +19,9 @@ use crate::job::{Outputs, Report, Watch};
 use crate::log::{ambient_step_of, doubts::alternating};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
+
+/// The stage that fits parts of the recordings.
+const ALONE: &str = "each by itself";
 
 /// What a fit needs, read and checked.
 struct Ready {
@@ -103,6 +107,10 @@ pub(super) fn steps(
             }
             .to_owned(),
         ),
+        match alone::parts(inputs).len() {
+            0 => Step::new(ALONE, false, "one recording".to_owned()),
+            parts => Step::new(ALONE, true, format!("{parts} fits, to see whether one value for all holds")),
+        },
         Step::figures(pictures, "measured and fitted"),
     ]
 }
@@ -154,6 +162,8 @@ pub fn fit(
             break (result, curves);
         }
     };
+    let alone = stages.time(ALONE, || alone::each(inputs, &ready.recordings, &ready.start, &ready.free, &settings));
+    watch.go_on()?;
     let parameter_files = parameter_files(inputs, options, &result, outputs, &mut places)?;
     let estimates = beside(&outputs.out, "-estimates.csv");
     estimates::write(&result, &ready.start, &places.place(&estimates)?, &estimates)?;
@@ -174,6 +184,7 @@ pub fn fit(
         stopped: words,
         converged,
         free: result.groups.clone(),
+        alone,
         photodiodes: result
             .photodiodes
             .iter()
@@ -203,7 +214,7 @@ pub fn fit(
         table,
     };
     let left_out = left_out(steps(inputs, options, outputs, ambient(inputs, options), Some(ready.samples())));
-    let warnings = warnings(&result, &ready.recordings);
+    let warnings = warnings(&result, &ready.recordings, alone::warnings(&figures.alone, inputs, options));
     let notes = notes(&result, inputs, &ready.recordings, outputs.figures);
     let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };
     if outputs.report {
@@ -230,8 +241,8 @@ fn in_words(why: &str, recordings: &[ReadRecording]) -> String {
 }
 
 /// What has to be known before the values are used.
-fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
-    let mut warnings = Vec::new();
+fn warnings(result: &FitResult, recordings: &[ReadRecording], of_parts: Vec<String>) -> Vec<String> {
+    let mut warnings = of_parts;
     let (words, converged) = stopped(result.stop);
     if !converged {
         warnings.push(format!(
@@ -294,8 +305,8 @@ fn notes(result: &FitResult, inputs: &FitInputs, recordings: &[ReadRecording], f
     let shared: Vec<String> = result.groups.iter().flat_map(|group| &group.symbols).map(ToString::to_string).collect();
     if subjects.len() > 1 && !shared.is_empty() {
         notes.push(format!(
-            "{} have one value of {}; only offsets and scalings are each person's own: fit each person's recordings by \
-             themselves to see how much they differ",
+            "{} have one value of {}; only offsets and scalings are each person's own (`alone` has what each person's \
+             recordings give by themselves)",
             subjects.join(", "),
             shared.join(", ")
         ));

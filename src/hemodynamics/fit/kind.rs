@@ -48,7 +48,7 @@ impl Job for FitOptions {
                 Part::pictures(""),
             ],
         )
-        .revision(7)
+        .revision(8)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

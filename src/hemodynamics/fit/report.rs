@@ -6,6 +6,7 @@ use lunula_hemodynamics::noise::Slow;
 use lunula_hemodynamics::{Combination, Group, Rival, Stop};
 use serde::Serialize;
 
+use super::alone::Alone;
 use crate::files::json_text;
 use crate::job::Report;
 
@@ -75,6 +76,8 @@ pub struct FitFigures {
     pub converged: bool,
     /// The free groups.
     pub free: Vec<Group>,
+    /// What each person's recordings give by themselves, or each recording where all are one person's; none of one.
+    pub alone: Vec<Alone>,
     /// Offsets and scalings.
     pub photodiodes: Vec<FittedPhotodiode>,
     /// What the rows and columns of the correlations are.

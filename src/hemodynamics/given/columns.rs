@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::{Channel, LitRows, LogReading, doubts, without_faults};
 use crate::table::{Cell, Table};
-use crate::words::nearest;
+use crate::words::{decimal_comma, nearest};
 
 pub(in crate::hemodynamics) const TIME: &str = "time_s";
 /// `P_F1` and `P_F2`.
@@ -226,7 +226,7 @@ impl Rows {
                     return;
                 }
                 Cell::Number(value) => format!("`{value}` is no finite number"),
-                Cell::Text(text) => format!("`{text}` is no number"),
+                Cell::Text(text) => format!("`{text}` is no number{}", decimal_comma(text)),
                 Cell::Missing => "is empty".to_owned(),
             };
             values.push(f64::NAN);
@@ -287,7 +287,9 @@ impl Rows {
                                 "`{value}` is no finite number; a photodiode's cell may be empty, but no other thing"
                             )
                         }
-                        Cell::Text(text) => format!("`{text}` is no number; correct it or leave it empty"),
+                        Cell::Text(text) => {
+                            format!("`{text}` is no number{}; correct it or leave it empty", decimal_comma(text))
+                        }
                     };
                     Err(table.cell(row, name, what))
                 })?;

@@ -5,6 +5,8 @@
 
 use lunula_live::wire::{self, is_missing, with_decimal_comma};
 
+use crate::words::decimal_comma;
+
 /// Reads cells as numbers.
 #[derive(Debug, Clone, Default)]
 pub(in crate::log) struct Numbers {
@@ -50,7 +52,8 @@ impl Numbers {
             self.one_kind(cell)?;
             return Ok(number);
         }
-        Err(format!("`{}` is no number; correct it or leave it empty", shown(cell)))
+        let shown = shown(cell);
+        Err(format!("`{shown}` is no number{}; correct it or leave it empty", decimal_comma(&shown)))
     }
 
     fn one_kind(&self, cell: &[u8]) -> Result<(), String> {

@@ -7,7 +7,9 @@ use std::path::Path;
 use crate::input;
 use crate::log::{Columns, LogHeader};
 use crate::photo::MASKS;
+use crate::photograph::PICTURES;
 use crate::table::{Table, column_names};
+use crate::video::FILMS;
 
 /// How deep is looked.
 const DEEPEST: usize = 6;
@@ -177,8 +179,8 @@ fn sort(path: &Path) -> Sort {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
     match ending {
-        "png" | "jpg" | "jpeg" | "tif" | "tiff" | "bmp" => Sort::Photo,
-        "mp4" | "mov" | "avi" | "mkv" | "m4v" | "webm" => Sort::Video,
+        photo if PICTURES.contains(&photo) => Sort::Photo,
+        film if FILMS.contains(&film) => Sort::Video,
         "toml" => toml_file(path),
         "csv" | "parquet" => table(path),
         "gz" if name.ends_with(".csv.gz") => log(path),

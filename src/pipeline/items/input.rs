@@ -5,9 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::table::{Rows, read};
 use super::{Item, Missing, Origin, Relation, World, holds, plain};
 use crate::job::Keys;
+use crate::photo::MASKS;
+use crate::photograph::PICTURES;
 use crate::pipeline::items::pattern::{Disk, Match, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
 use crate::toml_file::Fault;
+use crate::video::FILMS;
 use crate::words::instead;
 
 /// How many places of one fault are listed.
@@ -23,6 +26,8 @@ pub(in crate::pipeline) struct InputItems {
     pub(in crate::pipeline) rows: Vec<(Keys, String)>,
     /// Files that a pattern leaves out only for the case of letters.
     pub(in crate::pipeline) in_other_case: Vec<String>,
+    /// Photographs and films that it leaves out for their ending, of which it takes none with another.
+    pub(in crate::pipeline) in_other_format: Vec<String>,
     /// What it leaves out for a name that is not UTF-8.
     pub(in crate::pipeline) not_utf8: Vec<String>,
 }
@@ -56,7 +61,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     let fault = |what: String| spec.fault(input.source_at, what);
     let inside = said.strip_prefix("{phantom}/");
     let pattern = Pattern::parse(inside.unwrap_or(said)).map_err(fault)?;
-    let mut in_other_case = Vec::new();
+    let (mut in_other_case, mut in_other_format) = (Vec::new(), Vec::new());
     let found = if inside.is_some() {
         if world.catalogue.is_none() {
             return Err(fault(
@@ -71,6 +76,15 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         let others = pattern.in_any_case().map_or_else(Vec::new, |pattern| pattern.find(&disk).matches);
         let others = others.into_iter().filter(|other| holds(&input.filter, &other.keys));
         in_other_case.extend(others.map(|other| other.path).filter(|path| !paths.contains(path.as_str())));
+        // A picture may lie beside its film, a mask beside its photograph.
+        let is_mask = |path: &str| path.to_lowercase().split(['/', '_', '-', '.']).any(|part| MASKS.contains(&part));
+        let is_new = |other: &Match| {
+            let is_taken = found.matches.iter().any(|found| found.keys == other.keys);
+            !is_taken && !is_mask(&other.path) && !in_other_case.contains(&other.path)
+        };
+        let others = [&PICTURES, &FILMS].into_iter().filter_map(|endings| pattern.with_endings(endings));
+        let others = others.flat_map(|pattern| pattern.find(&disk).matches).filter(is_new);
+        in_other_format.extend(others.filter(|other| holds(&input.filter, &other.keys)).map(|other| other.path));
         found
     };
     if let Some(why) = found.nothing {
@@ -105,7 +119,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         return Err(nothing_left(spec, input));
     }
     let (columns, not_utf8) = (pattern.names, found.not_utf8);
-    Ok(InputItems { relations: vec![relation], columns, rows: Vec::new(), in_other_case, not_utf8 })
+    Ok(InputItems { relations: vec![relation], columns, rows: Vec::new(), in_other_case, in_other_format, not_utf8 })
 }
 
 fn of_table(
@@ -193,7 +207,7 @@ fn of_table(
         .collect();
     let all = (0..rows.rows.len()).map(|row| (rows.known(row, 0..known.len()), rows.rows[row].1.clone())).collect();
     let columns = rows.columns.clone();
-    Ok(InputItems { relations, columns, rows: all, in_other_case: Vec::new(), not_utf8: Vec::new() })
+    Ok(InputItems { relations, columns, rows: all, in_other_case: vec![], in_other_format: vec![], not_utf8: vec![] })
 }
 
 /// Where the file of a cell stands.

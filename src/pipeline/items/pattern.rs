@@ -84,6 +84,23 @@ impl Pattern {
         }
         any.then_some(pattern)
     }
+
+    /// The same for all endings of a sort of files, without dots; none where it ends in none of these.
+    pub(in crate::pipeline) fn with_endings(&self, endings: &[&str]) -> Option<Self> {
+        let mut pattern = self.clone();
+        let Some(Part::Wild(wild)) = pattern.parts.last_mut() else { return None };
+        let (_, own) = wild.said.rsplit_once('.')?;
+        if !endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)) {
+            return None;
+        }
+        let all = endings.join("|");
+        let [short, long] = wild.ways.each_ref().map(|way| {
+            let (name, _) = way.as_str().rsplit_once("\\.")?;
+            Regex::new(&format!("{name}\\.(?i:{all})$")).ok()
+        });
+        wild.ways = [short?, long?];
+        Some(pattern)
+    }
 }
 
 impl Wild {

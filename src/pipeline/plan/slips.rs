@@ -1,6 +1,6 @@
 //! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, or
-//! that lacks it, and files whose names fit a pattern but for the case of letters, or are not UTF-8. And what is done
-//! apart for one: values of a table or of files' names, of a key that a stage is done for each of, that differ in case
+//! that lacks it, and files whose names fit a pattern but for the case of letters, are of another format, or are not
+//! UTF-8. And what is done apart for one: values of a table or of files' names, of a key that a stage is done for each of, that differ in case
 //! and spaces only.
 //!
 //! A value is a slip where no `where` asks for it as it is written, and it differs from one that is asked for only in
@@ -91,13 +91,25 @@ pub(super) fn empty_keys(spec: &Spec, inputs: &[Option<InputItems>]) -> Vec<Stri
     warnings.into_iter().collect()
 }
 
+fn not_taken<'a>(paths: &'a [String], taken: &BTreeSet<String>) -> Vec<&'a str> {
+    paths.iter().map(String::as_str).filter(|path| !taken.contains(*path)).collect()
+}
+
 fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Vec<String> {
-    let left: Vec<&str> =
-        items.in_other_case.iter().map(String::as_str).filter(|path| !taken.contains(*path)).collect();
+    let left = not_taken(&items.in_other_case, taken);
     let other_case = (!left.is_empty()).then(|| {
         format!(
             "`{pattern}` leaves out {} file(s) whose names differ only in the case of letters: {}; rename them, or \
              write such a letter as [cC]",
+            left.len(),
+            listed(&left)
+        )
+    });
+    let left = not_taken(&items.in_other_format, taken);
+    let other_format = (!left.is_empty()).then(|| {
+        format!(
+            "`{pattern}` leaves out {} file(s) of another format, of which it takes none: {}; write them as the others \
+             are, or the pattern without an ending",
             left.len(),
             listed(&left)
         )
@@ -110,7 +122,7 @@ fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Vec<
             listed(&unnamed)
         )
     });
-    other_case.into_iter().chain(not_utf8).collect()
+    other_case.into_iter().chain(other_format).chain(not_utf8).collect()
 }
 
 fn of_table(

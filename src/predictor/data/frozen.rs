@@ -1,9 +1,10 @@
-//! Columns that stand still for a while in the middle of a recording: a transducer or an amplifier that hangs.
+//! Columns that stand still for a while in the middle of a recording: a transducer or an amplifier that hangs; targets
+//! that do so throughout one of several recordings, as where 0 was written for what was not recorded.
 //!
 //! Values that stay the same to the last digit are no fault by themselves: a coarse converter at rest gives them, and a
 //! force of 0, a photodiode at an end of its range, a force or an angle at the end that is nearer to 0, where a finger
-//! rests. They are one where the other photodiodes say, by a linear model of the rest of the recording, that the value
-//! moved meanwhile.
+//! rests. They are one where the other photodiodes say, by a linear model of the rest of the recording, or of the other
+//! recordings, that the value moved meanwhile.
 
 use std::ops::Range;
 
@@ -29,7 +30,8 @@ pub(super) fn warnings(data: &Dataset) -> Vec<String> {
     let of_recording = |one: &Recording| {
         let mut held: Vec<(Range<usize>, Vec<&str>)> = Vec::new();
         for (column, name) in names.iter().enumerate() {
-            let Some(run) = longest_run(data, one, column).filter(|run| moved(data, one, column, run)) else {
+            let rest = |run: &Range<usize>| [one.rows.start..run.start, run.end..one.rows.end];
+            let Some(run) = longest_run(data, one, column).filter(|run| moved(data, column, run, &rest(run))) else {
                 continue;
             };
             match held.iter_mut().find(|(other, _)| *other == run) {
@@ -48,7 +50,7 @@ pub(super) fn warnings(data: &Dataset) -> Vec<String> {
                 called(data)
             )
         };
-        held.into_iter().map(say).chain(all_at_once(data, one)).collect::<Vec<_>>()
+        held.into_iter().map(say).chain(all_at_once(data, one)).chain(never_moves(data, one)).collect::<Vec<_>>()
     };
     data.recordings().iter().flat_map(of_recording).collect()
 }
@@ -73,6 +75,28 @@ fn all_at_once(data: &Dataset, one: &Recording) -> Option<String> {
             called(data),
             longest.len(),
             moved.join(", ")
+        )
+    })
+}
+
+/// What to say of targets that have a single value in a recording, while the photodiodes say, by the other recordings,
+/// that they moved.
+fn never_moves(data: &Dataset, one: &Recording) -> Option<String> {
+    let y = data.y();
+    let is_one = |target: &usize| one.rows.clone().all(|row| y[[row, *target]] == y[[one.rows.start, *target]]);
+    let still = (0..data.targets().len()).filter(is_one);
+    let rest = [0..one.rows.start, one.rows.end..data.rows()];
+    let still = still.filter(|target| moved(data, data.inputs().len() + target, &one.rows, &rest));
+    let still: Vec<String> =
+        still.map(|target| format!("{} ({})", data.targets()[target], y[[one.rows.start, target]])).collect();
+    (lasts(data, &one.rows) && !still.is_empty()).then(|| {
+        format!(
+            "{}: {} is the same in all {} rows, while the {} say, as in the other recordings, that it moved: was it \
+             recorded? Leave cells empty that were not",
+            one.name,
+            still.join(", "),
+            one.rows.len(),
+            called(data)
         )
     })
 }
@@ -117,10 +141,9 @@ fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>
     lasts(data, &longest).then_some(longest)
 }
 
-/// Whether the other photodiodes know a column, and say that it moved in a run of rows.
-fn moved(data: &Dataset, one: &Recording, k: usize, run: &Range<usize>) -> bool {
+/// Whether the other photodiodes know a column by the rows of `rest`, and say that it moved in a run of rows.
+fn moved(data: &Dataset, k: usize, run: &Range<usize>, rest: &[Range<usize>; 2]) -> bool {
     let others: Vec<usize> = (0..data.inputs().len()).filter(|&input| input != k).collect();
-    let rest = [one.rows.start..run.start, run.end..one.rows.end];
     if others.is_empty() || rest.iter().map(Range::len).sum::<usize>() < ROWS * (1 + others.len()) {
         return false;
     }

@@ -108,6 +108,20 @@ fn say(common: &Common, report: &FitReport) {
             ));
         }
     }
+    for one in &report.alone {
+        for group in &one.free {
+            let error = group
+                .standard_errors
+                .as_ref()
+                .map_or("not determined".to_owned(), |errors| format!("+- {:.2e}", errors[0]));
+            common.say(&format!(
+                "  {:<20} {:>12.5e} {error:<20} ({} alone)",
+                group.symbols[0].to_string(),
+                group.values[0],
+                one.name
+            ));
+        }
+    }
     // Of a photodiode that hardly sees the model a scaling has hundreds of digits.
     let volts = |value: f64| if value.abs() < 1e6 { fixed(value, 5) } else { format!("{value:.5e}") };
     for one in &report.photodiodes {

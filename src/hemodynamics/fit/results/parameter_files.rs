@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use lunula_hemodynamics::{Calibration, FitResult, Parameters};
 
-use super::{FitInputs, FitOptions, fitted};
 use crate::files::{Places, beside};
 use crate::hemodynamics::HemodynamicsError;
+use crate::hemodynamics::fit::{FitInputs, FitOptions, fitted};
 use crate::job::Outputs;
 
 /// Parameter files and whose recordings each is for: one for all whose photodiodes have the same offset and scaling.
-pub(super) fn parameter_paths(
+pub(in crate::hemodynamics::fit) fn parameter_paths(
     inputs: &FitInputs,
     options: &FitOptions,
     outputs: &Outputs,
@@ -50,7 +50,7 @@ pub(super) fn parameter_paths(
 
 /// Writes the fitted parameters; returns their places. Where there are several files, one more, under the
 /// result's own name, has offset and scaling as they were at the start.
-pub(super) fn parameter_files(
+pub(in crate::hemodynamics::fit) fn parameter_files(
     inputs: &FitInputs,
     options: &FitOptions,
     result: &FitResult,

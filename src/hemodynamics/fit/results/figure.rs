@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-use super::recording::ReadRecording;
 use crate::figure::{Chart, Item, draw_panels};
 use crate::hemodynamics::figures::{N_PER_CM2, chart, over_time};
+use crate::hemodynamics::fit::recording::ReadRecording;
 use crate::median::ends;
 
 /// Panels in a row, and the width of each.
 const COLUMNS: usize = 2;
 const WIDTH: u32 = 640;
 /// More panels than a picture shows.
-pub(super) const MOST_PANELS: usize = 24;
+pub(in crate::hemodynamics::fit) const MOST_PANELS: usize = 24;
 
 /// A panel for every photodiode of every recording.
-pub(super) fn draw_fit(
+pub(in crate::hemodynamics::fit) fn draw_fit(
     recordings: &[ReadRecording],
     fitted: &[Vec<Vec<f64>>],
     png: &Path,

@@ -12,7 +12,12 @@ use crate::hemodynamics::HemodynamicsError;
 use crate::table::{Column, TableError, TableWriter, Value};
 
 /// Writes the table that is to stand at `path` to `at`.
-pub(super) fn write(result: &FitResult, start: &Parameters, at: &Path, path: &Path) -> Result<(), HemodynamicsError> {
+pub(in crate::hemodynamics::fit) fn write(
+    result: &FitResult,
+    start: &Parameters,
+    at: &Path,
+    path: &Path,
+) -> Result<(), HemodynamicsError> {
     let mut columns = ["name", "recordings"].map(Column::text).to_vec();
     columns.extend(["start", "value", "standard_error", "low", "high"].map(Column::number));
     columns.push(Column::text("at_bound"));
