@@ -408,7 +408,9 @@ fn the_learning_curve_goes_down_the_recordings() {
 #[test]
 fn a_plan_does_nothing() {
     let dir = sensor();
-    let plan = dir.lunula(&["train", "nowhere.csv", "--target", "force", "--model", "network", "--plan"]).expect(0);
+    let of = |data: &str| dir.lunula(&["train", data, "--target", "force", "--model", "network", "--plan"]);
+    of("nowhere.csv").expect(2).says("nowhere.csv: is not there; check its name");
+    let plan = of("train.csv").expect(0);
     let line = |stage: &str| {
         plan.stdout.lines().find(|line| line.starts_with(stage)).unwrap_or_else(|| panic!("{stage}")).to_owned()
     };

@@ -44,6 +44,8 @@ pub struct Report<F> {
 #[derive(Deserialize)]
 struct Earlier {
     #[serde(default)]
+    job: String,
+    #[serde(default)]
     pictures: Vec<PathBuf>,
 }
 
@@ -111,10 +113,21 @@ impl<F: Serialize> Report<F> {
         json_text(self)
     }
 
-    /// Warns of pictures that the run drew which was reported in `at` before, and this one doesn't.
+    /// Warns of another job's report in `at`, which this one's replaces, and of pictures that the run drew which was
+    /// reported there, and this one doesn't.
     pub fn warn_of_earlier(&mut self, at: &Path) {
         let before = std::fs::read(at).ok().and_then(|json| serde_json::from_slice::<Earlier>(&json).ok());
-        let left = before.map_or_else(Vec::new, |before| before.pictures).into_iter();
+        let Some(before) = before else { return };
+        if !before.job.is_empty() && before.job != self.job {
+            self.warnings.push(format!(
+                "{}: the report of `lunula {}` stood here, and is replaced by that of `lunula {}`; give each job a \
+                 folder, or name, of its own",
+                at.display(),
+                before.job,
+                self.job
+            ));
+        }
+        let left = before.pictures.into_iter();
         // By name: a folder may be called otherwise than before.
         let is_drawn = |path: &PathBuf| self.pictures.iter().any(|own| own.file_name() == path.file_name());
         let left: Vec<PathBuf> = left.filter(|path| !is_drawn(path) && path.is_file()).collect();

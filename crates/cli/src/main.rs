@@ -4,6 +4,7 @@
 //! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could
 //! not be (each is named on standard error); 2 nothing done, nothing changed; 130 interrupted.
 
+mod absent;
 mod doctor;
 mod jobs;
 mod misused;
@@ -18,7 +19,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::files::results_stand;
 use lunula::input;
@@ -119,8 +120,18 @@ struct Stopped;
 
 /// Parses and runs the command.
 fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
+    let said = Cli::command().try_get_matches();
+    let parsed = said.and_then(|said| {
+        let cli = Cli::from_arg_matches(&said).map_err(|wrong| wrong.format(&mut Cli::command()))?;
+        Ok((cli, absent::inputs(&said)))
+    });
+    let cli = match parsed {
+        Ok((cli, absent)) if absent.is_empty() => cli,
+        Ok((_, absent)) => {
+            let all: Vec<String> =
+                absent.iter().map(|path| format!("{}: is not there; check its name", path.display())).collect();
+            return ended_with(Err(anyhow::anyhow!(all.join("\n"))));
+        }
         // Help and version.
         Err(shown) if !shown.use_stderr() => {
             out::note(shown.print());

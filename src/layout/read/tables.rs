@@ -303,7 +303,10 @@ fn contradicted(sources: &[Source], inputs: &LayoutInputs, own: &[&str], targets
             }
         }
         let rows = start..time_s.len();
-        let [name, session, subject] = [&input.name, &input.name, input.person()].map(str::to_owned);
+        // Everybody has a model of their own here, also those whose name is only their file's: they may differ.
+        let person = source.subject.first().map_or(input.person(), String::as_str);
+        let [name, session] = [&input.name; 2].map(String::clone);
+        let subject = format!("person {person}");
         recordings.push(Recording { name, session, subject, rows: rows.clone() });
         parts.push(rows);
     }

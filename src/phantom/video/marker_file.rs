@@ -43,7 +43,10 @@ impl Scene {
             text += &format!("refresh_hz = {:?}\n", clock.refresh_hz.unwrap_or(f64::INFINITY));
         }
         if let Some(mapping) = &self.mapping {
-            let distortion = options.lens.as_ref().map_or(&[][..], |lens| &lens.distortion);
+            let mut distortion = options.lens.as_ref().map_or(Vec::new(), |lens| lens.distortion.clone());
+            // OpenCV's models have 4, 5 or 8 coefficients; those that weren't given are 0.
+            let count = distortion.len();
+            distortion.resize([0, 4, 5, 8].into_iter().find(|&model| model >= count).unwrap_or(count), 0.0);
             text += &format!("\n[camera]\nfx = {:?}\ndistortion = {distortion:?}\n", mapping.fx_px());
         }
         if let Some(plane) = options.plane {

@@ -36,8 +36,12 @@ fn in_order<T: Ord>(names: &[String], place: fn(&str) -> Option<T>) -> Vec<Strin
     found.into_iter().map(|(_, name)| name.clone()).collect()
 }
 
+/// Of their box, the cells of a nail are more than this (assumed: those of an ellipse 0.79).
+const FILLED: f64 = 0.5;
+
 /// What to say of a table whose cells are of another grid than those of a model: cells of one name are other places
-/// then. A model reads the cells on the nail, whose box lies in the grid's middle.
+/// then. A model reads the cells on the nail, whose box lies in the grid's middle; of cells that were chosen from these,
+/// which fill no box that spans the grid, the grid isn't known.
 pub(super) fn other_grid(inputs: &[String], names: &[String]) -> Option<String> {
     let of_model: Vec<[usize; 2]> = inputs.iter().filter_map(|name| cell(name)).collect();
     let side = |cells: &[[usize; 2]], axis: usize, edge: bool| {
@@ -47,6 +51,14 @@ pub(super) fn other_grid(inputs: &[String], names: &[String]) -> Option<String> 
     let sides = |cells: &[[usize; 2]], edge| Some([side(cells, 0, edge)?, side(cells, 1, edge)?]);
     let of_table: Vec<[usize; 2]> = names.iter().filter_map(|name| cell(name)).collect();
     let ([rows, columns], [own_rows, own_columns]) = (sides(&of_model, true)?, sides(&of_table, false)?);
+    let spans = [0, 1].map(|axis| {
+        let places = || of_model.iter().map(|at| at[axis]);
+        Some(1 + places().max()? - places().min()?)
+    });
+    let [high, wide] = [spans[0]?, spans[1]?];
+    if 2 * high < rows || 2 * wide < columns || (of_model.len() as f64) < FILLED * (high * wide) as f64 {
+        return None;
+    }
     // Other shapes are a choice of somebody's.
     (rows == columns && own_rows == own_columns && rows != own_rows).then(|| {
         format!(

@@ -50,6 +50,10 @@ fn cells_of_another_grid_are_warned_of() {
     assert!(said.contains("10 x 10") && said.contains("--cells 8"), "{said}");
     assert_eq!(columns::other_grid(&cells(1, 7), &cells(0, 8)), None);
     assert_eq!(columns::other_grid(&cells(0, 8), &cells(0, 8)), None);
+    for chosen in [&["C_04_08", "C_06_02"][..], &["C_04_04", "C_05_05"], &["C_02_02", "C_03_03", "C_08_08"]] {
+        let chosen: Vec<String> = chosen.iter().map(|&name| name.to_owned()).collect();
+        assert_eq!(columns::other_grid(&chosen, &cells(0, 12)), None, "{chosen:?}");
+    }
     let photodiodes = ["P1", "P2"].map(str::to_owned);
     assert_eq!(columns::other_grid(&photodiodes, &photodiodes), None);
     let table = |side: usize| {
