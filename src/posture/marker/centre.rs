@@ -9,7 +9,8 @@
 //!
 //! The covariance is that of independent noise, times the square of [`Look::inflation`]: what a codec changes is not
 //! independent from sample to sample, for it moves whole blocks ([`super::inflation`]); and that of a streak, where a
-//! marker moves during the exposure by more than the model of an edge that is blurred explains.
+//! marker moves during the exposure by more than the model of an edge that is blurred explains; and by how far the
+//! outline's centre lies beside, where the marker was learnt.
 //!
 //! [`disc`]: super::disc
 
@@ -221,7 +222,7 @@ pub(super) fn fit(
     let factor = look.inflation.powi(2);
     let misfit = unexplained / contrast;
     let streak = STREAK_VARIANCE * (misfit - STREAK_LEAST * look.least_misfit - STREAK).max(0.0);
-    let lasting_px2 = [1.0, 0.0, 1.0].map(|axis| axis * streak * shape.radius_px.powi(2));
+    let lasting_px2 = [1.0, 0.0, 1.0].map(|axis| axis * (streak * shape.radius_px.powi(2) + look.apart_px2));
     let centre = Centre {
         at_px: shape.at_px,
         covariance_px2: std::array::from_fn(|k| white_px2[k] * factor + lasting_px2[k]),

@@ -6,6 +6,7 @@ use super::super::marker::centre::{Scratch, centre};
 use super::super::track::loose_look;
 use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::looks::siting::{Siting, SitingEvidence};
+use crate::posture::marker::sight::Centre;
 use crate::posture::survey::find::{Area, Blob, Finder, Paint, distance};
 use crate::posture::survey::naming::Point;
 use crate::video::Frame;
@@ -21,6 +22,9 @@ const DISC_ELONGATION: f64 = 1.1;
 /// What is round but leaves more is ragged, unless too small to say so (assumed).
 const RAGGED_MISFIT: f64 = 0.04;
 const RAGGED_RADIUS_PX: f64 = 6.0;
+/// The centres of a disc and of its outline are no further apart than so many of their standard errors (measured: discs
+/// of phantoms, clean, hard, small, at most 1.6; round yellow paint with brush strokes up to 12).
+const APART_ERRORS: f64 = 2.0;
 /// What moves less than this share of its radius from frame to frame is not blurred to another shape.
 const STILL_RADII: f64 = 0.5;
 /// Spots followed at once, at most.
@@ -256,11 +260,15 @@ impl Spots {
                         let (disc, blot) = (disc(), blot());
                         // What moves is longer by its blur.
                         let still = spot.velocity_px[0].hypot(spot.velocity_px[1]) < STILL_RADII * last.radius_px;
-                        let is_round = |disc: &Look| blot.as_ref().is_none_or(|blot| is_disc(disc, blot));
+                        let looks = disc.as_ref().zip(blot.as_ref());
+                        let apart = looks
+                            .and_then(|(disc, blot)| Apart::of(frame, [disc, blot], last.at_px, &mut self.scratch));
+                        let agree = apart.is_none_or(|apart| apart.errors <= APART_ERRORS);
+                        let is_round = |disc: &Look| blot.as_ref().is_none_or(|blot| agree && is_disc(disc, blot));
                         match disc {
                             Some(disc) if is_round(&disc) || (patient && !still) => {
                                 spot.as_blot = blot;
-                                Some(disc)
+                                Some(Look { apart_px2: apart.map_or(0.0, |apart| apart.px2), ..disc })
                             }
                             _ => blot.filter(|_| patient),
                         }
@@ -287,6 +295,30 @@ impl Spots {
     }
 }
 
+/// How far the centre of what is taken for a disc is from that of its outline.
+#[derive(Debug, Clone, Copy)]
+struct Apart {
+    /// In standard errors of both.
+    errors: f64,
+    /// The variance of a coordinate that it shows beyond these, pixels squared.
+    px2: f64,
+}
+
+impl Apart {
+    /// Wherever chroma lies, the nearest; none where either has no centre. Brush strokes and grain within paint, of which
+    /// no disc's model knows, pull the one and not the other.
+    fn of(frame: &Frame<'_>, looks: [&Look; 2], at_px: [f64; 2], scratch: &mut Scratch) -> Option<Self> {
+        let apart = |siting: Siting| {
+            let [disc, outline] = looks.map(|look| centre(frame, siting, look, at_px, scratch).ok());
+            let [disc, outline] = [disc?.centre, outline?.centre];
+            let variance = |one: &Centre| 0.5 * (one.covariance_px2[0] + one.covariance_px2[2]);
+            let (both, off) = (variance(&disc) + variance(&outline), distance(disc.at_px, outline.at_px));
+            Some(Self { errors: off / both.sqrt(), px2: (0.5 * off * off - both).max(0.0) })
+        };
+        Siting::likely(frame).into_iter().filter_map(apart).min_by(|a, b| a.errors.total_cmp(&b.errors))
+    }
+}
+
 /// Whether what both looks were learnt of is a disc.
 fn is_disc(disc: &Look, blot: &Look) -> bool {
     let elongation = blot.blot.as_ref().map_or(1.0, Blot::elongation);
@@ -304,4 +336,46 @@ fn is_same(a: &Blob, b: &Blob) -> bool {
     let distance = distance(a.at_px, b.at_px);
     let growth = (a.radius_px() / b.radius_px()).ln().abs();
     distance < 0.6 * a.radius_px().min(b.radius_px()) && growth < 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::posture::stage::{SKIN, Stage};
+
+    /// As bright as skin is, and where it is thick, brighter.
+    const THIN: [u8; 3] = [0xd8, 0xb0, 0x40];
+    const THICK: [u8; 3] = [0xf4, 0xcc, 0x5c];
+
+    /// How far a disc's centre and its outline's are apart, of a mark at (60.2, 49.7) with a stroke of brighter
+    /// paint or none; and how far off each is.
+    fn looked_at(stroke: bool) -> (Apart, [f64; 2]) {
+        let at = [60.2, 49.7];
+        let mut stage = Stage::new(120, 100, SKIN);
+        stage.disc(at, 10.0, THIN);
+        if stroke {
+            stage.disc([63.2, 46.2], 4.5, THICK);
+        }
+        let picture = stage.picture(3);
+        let (frame, mut scratch) = (picture.frame(0, 0.0), Scratch::default());
+        let siting = Siting { dx_px: 0.5, dy_px: 0.5 };
+        let disc = Look::learn(&frame, siting, at, 10.0, &mut scratch).expect("a disc");
+        let outline = Look::learn_blot(&frame, siting, at, 10.0).expect("an outline");
+        let looks = [&disc, &outline];
+        let off = looks.map(|look| {
+            let centre = centre(&frame, siting, look, at, &mut scratch).expect("a centre").centre;
+            distance(centre.at_px, at)
+        });
+        (Apart::of(&frame, looks, at, &mut scratch).expect("two centres"), off)
+    }
+
+    #[test]
+    fn round_paint_with_brush_strokes_is_no_disc() {
+        let (apart, [disc, outline]) = looked_at(false);
+        assert!(apart.errors <= APART_ERRORS && apart.px2 < 0.01, "{apart:?}");
+        assert!(disc < 0.1 && outline < 0.1, "{disc} {outline}");
+        let (apart, [disc, outline]) = looked_at(true);
+        assert!(apart.errors > APART_ERRORS && apart.px2 > 0.02, "{apart:?}");
+        assert!(disc > 0.3 && outline < 0.15, "{disc} {outline}");
+    }
 }

@@ -344,7 +344,7 @@ fn take_back(
             return;
         }
         // It may be a part that is seen again, the rest still hidden.
-        new.keep_size(old);
+        new.keep_first(old);
     }
     if let Ok(fit) = centre(frame, siting, &new, blob.at_px, scratch)
         && near(fit.centre.at_px)

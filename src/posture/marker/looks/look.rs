@@ -31,6 +31,8 @@ pub(crate) struct Look {
     /// How many times larger the errors are than independent noise would make them
     /// ([`crate::posture::marker::inflation`]).
     pub(crate) inflation: f64,
+    /// Variance of a disc's coordinates that stays, as its outline's centre shows, pixels squared.
+    pub(crate) apart_px2: f64,
     /// How its outline is found; none for a disc.
     pub(crate) blot: Option<Blot>,
 }
@@ -47,6 +49,7 @@ impl Look {
             least_misfit: 0.0,
             noise: [1.0; 3],
             inflation: 1.0,
+            apart_px2: 0.0,
             blot: None,
         }
     }
@@ -68,8 +71,10 @@ impl Look {
         if self.blot.is_some() { of.seen_on(self.marker, self.background) } else { of.seen_as(self.marker) }
     }
 
-    /// Keeps the size that a blot had when it was first learnt, whatever light it is in now.
-    pub(crate) fn keep_size(&mut self, before: &Self) {
+    /// Keeps what was seen when it was first learnt, whatever light it is in now: the size of a blot, how far a disc's
+    /// outline is off.
+    pub(crate) fn keep_first(&mut self, before: &Self) {
+        self.apart_px2 = before.apart_px2;
         if let (Some(blot), Some(before)) = (&mut self.blot, &before.blot) {
             blot.keep_size(before);
         }

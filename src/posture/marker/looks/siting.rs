@@ -22,6 +22,15 @@ impl Siting {
     }
 }
 
+impl Siting {
+    /// What videos have: as most cameras write, and midway between columns too.
+    pub(crate) fn likely(frame: &Frame<'_>) -> [Self; 2] {
+        let (across, _) = frame.subsampling();
+        let usual = Self::usual(frame);
+        [usual, Self { dx_px: if across == 2 { 0.5 } else { 0.0 }, ..usual }]
+    }
+}
+
 /// Fits that are needed to tell.
 const LEAST_FITS: usize = 6;
 /// How near the mean has to come to a siting, and how sure it has to be.
