@@ -4,21 +4,34 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
+use super::results::JobResults;
 use crate::input;
 use crate::log::{Columns, LogHeader};
 use crate::photo::MASKS;
 use crate::photograph::PICTURES;
+use crate::pipeline::store::MadeBefore;
 use crate::table::{Table, column_names};
 use crate::video::FILMS;
 
-/// How deep is looked.
+/// How deep is looked (assumed: recordings are in folders of a person, a day, a session, a camera).
 const DEEPEST: usize = 6;
+/// What `lunula phantom` writes into its folders `truth`.
+const RECORDS: [&str; 6] = ["board.json", "log.json", "nailvideo.json", "phantom.json", "press.json", "scene.json"];
 
 /// What was found, by sort; paths are relative to the folder, with `/`, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Inventory {
-    /// All of them.
+    /// All files, those that are passed over too: a pattern finds them all the same.
     pub(super) all: Vec<String>,
+    /// Those of `all` that are results, or in folders that are passed over.
+    not_own: BTreeSet<String>,
+    /// What jobs wrote beside own files; folders end in `/`.
+    pub(super) results: Vec<String>,
+    /// Folders of runs' results.
+    pub(super) runs: Vec<String>,
+    /// The folders of these runs' tasks.
+    tasks: BTreeSet<String>,
+    pub(super) passed: Vec<Passed>,
     /// How many names are not UTF-8, which no pattern has.
     pub(super) unnamed: usize,
     pub(super) photos: Vec<String>,
@@ -37,6 +50,28 @@ pub(super) struct Inventory {
     pub(super) sets: Vec<String>,
     pub(super) sessions: Option<Sessions>,
     pub(super) unknown: Vec<String>,
+}
+
+/// A folder that is not looked at.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Passed {
+    pub(super) path: String,
+    pub(super) reason: Reason,
+    /// Whether files in it are of a sort that would be used.
+    pub(super) is_missed: bool,
+}
+
+/// Why a folder is not looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Reason {
+    /// The truth of generated recordings.
+    GeneratedTruth,
+    /// It is called as that.
+    Truth,
+    /// It is below too many folders.
+    Deep,
+    /// A run worked there, and nothing says which results are its.
+    NoRecords,
 }
 
 /// A table that names files.
@@ -78,9 +113,10 @@ enum Sort {
 pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     input::list(folder)?;
     let mut found = Inventory::default();
-    walk(folder, "", 0, &mut found);
+    walk(folder, "", 0, false, &mut found);
     let mut tables = Vec::new();
-    for path in found.all.clone() {
+    let own: Vec<String> = found.all.iter().filter(|path| !found.not_own.contains(*path)).cloned().collect();
+    for path in own {
         match sort(&folder.join(&path)) {
             Sort::Photo => found.photos.push(path),
             Sort::Video => found.videos.push(path),
@@ -115,8 +151,10 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     Ok(found)
 }
 
-fn walk(folder: &Path, at: &str, depth: usize, found: &mut Inventory) {
-    let mut entries: Vec<(String, bool)> = std::fs::read_dir(folder.join(at))
+/// Walks a folder; of one that is passed over only the names are taken.
+fn walk(folder: &Path, at: &str, depth: usize, is_passed: bool, found: &mut Inventory) {
+    let here = folder.join(at);
+    let mut entries: Vec<(String, bool)> = std::fs::read_dir(&here)
         .into_iter()
         .flatten()
         .flatten()
@@ -127,33 +165,60 @@ fn walk(folder: &Path, at: &str, depth: usize, found: &mut Inventory) {
         .filter(|(name, _)| !name.starts_with('.'))
         .collect();
     entries.sort();
-    // What a job drew beside its table: NAME-angles.png beside NAME.run.json.
-    let of_run = |(name, _): &(String, bool)| {
-        let stem = name.strip_suffix(".run.json").filter(|_| is_run(&folder.join(at).join(name)))?;
-        Some(format!("{stem}-"))
-    };
-    let drawn: Vec<String> = entries.iter().filter_map(of_run).collect();
+    let names = entries.iter().filter(|(_, is_folder)| !is_folder).map(|(name, _)| name.as_str());
+    let of_jobs = if is_passed { JobResults::default() } else { JobResults::of(&here, names) };
+    if !is_passed && here.join(".lunula").is_dir() {
+        let tasks = MadeBefore::of(&here).tasks;
+        if tasks.is_empty() && !at.is_empty() {
+            pass(folder, at, depth, Reason::NoRecords, found);
+            return;
+        }
+        found.tasks.extend(tasks.iter().map(|task| joined(at, task)));
+        found.runs.push(if at.is_empty() { ".".to_owned() } else { at.to_owned() });
+    }
     for (name, is_folder) in entries {
-        let path = if at.is_empty() { name.clone() } else { format!("{at}/{name}") };
-        let results = || {
-            let folder = folder.join(&path);
-            folder.join(".lunula").is_dir() || is_run(&folder.join("run.json"))
-        };
-        let is_drawn = || drawn.iter().any(|stem| name.starts_with(stem.as_str())) && !is_table(&name);
+        let path = joined(at, &name);
+        let is_result = of_jobs.holds(&name, is_folder);
+        if is_result {
+            found.results.push(if is_folder { format!("{path}/") } else { path.clone() });
+        }
         if !is_folder {
-            if !is_drawn() {
-                found.all.push(path);
+            if is_result || is_passed {
+                found.not_own.insert(path.clone());
             }
-        } else if depth < DEEPEST && name != "truth" && !results() {
-            walk(folder, &path, depth + 1, found);
+            found.all.push(path);
+        } else if is_passed || is_result || found.tasks.contains(&path) {
+            if depth < 2 * DEEPEST {
+                walk(folder, &path, depth + 1, true, found);
+            }
+        } else if name == "truth" {
+            let is_generated = RECORDS.iter().any(|record| folder.join(&path).join(record).is_file());
+            let reason = if is_generated { Reason::GeneratedTruth } else { Reason::Truth };
+            pass(folder, &path, depth + 1, reason, found);
+        } else if depth == DEEPEST {
+            pass(folder, &path, depth + 1, Reason::Deep, found);
+        } else {
+            walk(folder, &path, depth + 1, false, found);
         }
     }
 }
 
-/// Whether a file is the report of a job.
-fn is_run(path: &Path) -> bool {
-    let report = std::fs::read(path).ok().and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
-    report.is_some_and(|report| report["job"].is_string())
+/// Passes over a folder, but for the names in it.
+fn pass(folder: &Path, at: &str, depth: usize, reason: Reason, found: &mut Inventory) {
+    let before = found.all.len();
+    walk(folder, at, depth, true, found);
+    let is_of_use = |path: &String| match sort(&folder.join(path)) {
+        Sort::Photo | Sort::Video | Sort::Markers { .. } | Sort::Log { .. } => true,
+        // Of true angles there are tables too.
+        Sort::Joints { .. } => reason != Reason::Truth,
+        Sort::Set | Sort::Other | Sort::Silent => false,
+    };
+    let is_missed = reason != Reason::GeneratedTruth && found.all[before..].iter().any(is_of_use);
+    found.passed.push(Passed { path: at.to_owned(), reason, is_missed });
+}
+
+fn joined(folder: &str, name: &str) -> String {
+    if folder.is_empty() { name.to_owned() } else { format!("{folder}/{name}") }
 }
 
 fn is_table(name: &str) -> bool {

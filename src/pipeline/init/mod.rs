@@ -1,10 +1,11 @@
 //! A pipeline for a folder: what lies there is looked at, and a file is written that runs as it stands, saying what was
 //! taken for what.
 //!
-//! In: a folder; out: the text of a pipeline file. Files are known by their ending and tables by their columns; `truth`
-//! folders, hidden files and folders of results are not looked at.
+//! In: a folder; out: the text of a pipeline file. Files are known by their ending and tables by their columns; what
+//! jobs and runs of lunula made, hidden files, `truth` folders and what is below too many folders are not looked at.
 
 mod look;
+mod results;
 mod shape;
 #[cfg(test)]
 mod tests;
@@ -35,6 +36,8 @@ pub fn propose(folder: &Path, from: &str) -> Result<Proposal, InitError> {
         } else {
             format!("nothing that is known among {} file(s)", found.all.len())
         };
+        let missed = write::passed_over(&found).into_iter().filter(|(_, is_missed)| *is_missed);
+        let what = missed.fold(what, |what, (said, _)| format!("{what}; {said}"));
         InitError::Nothing { path: folder.to_owned(), what }
     })
 }

@@ -1,7 +1,7 @@
 //! Pipelines for folders of files that are what their names and headers say.
 
 use super::shape::{PlaceNames, shape};
-use super::{InitError, propose};
+use super::{InitError, Proposal, propose};
 use crate::pipeline::tests::planned::folder_of as folder;
 use crate::pipeline::{Plan, Spec, kinds};
 
@@ -127,6 +127,72 @@ fn results_and_masks_are_no_photographs() {
     let beside = proposed(&[&photos[..], &[("nails/rest/S01_mask.png", ""), ("nails/rest/S02_mask.png", "")]].concat());
     assert_eq!(plain.1, beside.1, "{}", beside.0);
     assert!(beside.0.contains("masks are not used"), "{}", beside.0);
+}
+
+#[test]
+fn results_beside_own_files_are_none_and_hide_none() {
+    let logs = [("anna/a.csv", LOG), ("anna/b.csv", LOG), ("ben/a.csv", LOG)];
+    let evaluated = |folder: &str| {
+        let names = ["scatter.png", "scatter.svg", "by-magnitude.png", "held-out.png", "predicted.csv"];
+        let mut files: Vec<(String, &str)> = names.iter().map(|name| (format!("{folder}{name}"), "")).collect();
+        files.push((format!("{folder}merit.csv"), "recording,rmse\nanna/a.csv,1\n"));
+        files.push((format!("{folder}run.json"), "{\"job\": \"evaluate\", \"pictures\": []}"));
+        files
+    };
+    let (plain, tasks) = proposed(&logs);
+    assert!(plain.contains("3 logs of photodiodes: {subject}/{session}.csv"), "{plain}");
+    for folder in ["", "anna/", "results/"] {
+        let results = evaluated(folder);
+        let results: Vec<(&str, &str)> = results.iter().map(|(name, text)| (name.as_str(), *text)).collect();
+        let files = [&logs[..], &results].concat();
+        let (text, with) = proposed(&files);
+        assert_eq!(with, tasks, "{text}");
+        assert!(text.contains("3 logs of photodiodes: {subject}/{session}.csv"), "{text}");
+        assert!(
+            text.contains(&format!("results of lunula, which are no recordings: {folder}by-magnitude.png")),
+            "{text}"
+        );
+        assert_eq!(text.contains("where = { session = [\"a\", \"b\"] }"), folder == "anna/", "{text}");
+        assert_eq!(propose(self::folder(&files).path(), "").unwrap().left_out, [""; 0], "{text}");
+    }
+}
+
+#[test]
+fn of_a_run_only_its_tasks_are_results() {
+    let logs = [("anna/a.csv", LOG), ("anna/b.csv", LOG), ("ben/a.csv", LOG)];
+    let report = "{\"pipeline\": \"p\", \"tasks\": [{\"task\": \"angles/anna\"}]}";
+    let run = [("done/.lunula/lock", ""), ("done/run.json", report), ("done/angles/anna/x.csv", LOG)];
+    let (text, tasks) = proposed(&[&logs[..], &run].concat());
+    assert_eq!(tasks, proposed(&logs).1, "{text}");
+    assert!(text.contains("results of `lunula run`, which are no recordings, in done\n"), "{text}");
+    let (text, _) = proposed(&[&logs[..], &run, &[("done/c.csv", LOG)]].concat());
+    assert!(text.contains("4 logs of photodiodes: {subject}/{session}.csv"), "{text}");
+    let unknown = [&logs[..], &[run[0], run[2]]].concat();
+    let said = propose(folder(&unknown).path(), "").unwrap().left_out;
+    assert!(said.len() == 1 && said[0].starts_with("not looked at: done (`lunula run` worked there"), "{said:?}");
+}
+
+#[test]
+fn folders_that_are_passed_over_are_named() {
+    let logs = [("a.csv", LOG), ("b.csv", LOG)];
+    let left_out = |more: &[(&str, &str)]| {
+        let files = [&logs[..], more].concat();
+        let Proposal { text, left_out } = propose(folder(&files).path(), "").unwrap();
+        assert!(left_out.iter().all(|said| text.contains(said)), "{text}");
+        (text, left_out)
+    };
+    let (text, said) = left_out(&[("truth/log.csv", LOG), ("truth/log.json", "{}")]);
+    assert!(text.contains("not looked at: truth (the truth of generated recordings)"), "{text}");
+    assert_eq!(said, [""; 0]);
+    assert_eq!(left_out(&[("truth/a.csv", "frame,time_s,J2_deg\n0,0,1\n")]).1, [""; 0]);
+    let (_, said) = left_out(&[("truth/c.csv", LOG)]);
+    assert!(said.len() == 1 && said[0].starts_with("not looked at: truth (by its name"), "{said:?}");
+    let (text, said) = left_out(&[("1/2/3/4/5/6/7/notes.docx", "")]);
+    assert!(said.is_empty() && text.contains("not looked at: 1/2/3/4/5/6/7 (too many folders deep"), "{text}");
+    let (_, said) = left_out(&[("1/2/3/4/5/6/7/8/c.csv", LOG), ("1/2/3/4/5/6/c.csv", LOG)]);
+    assert!(said.iter().any(|said| said.starts_with("not looked at: 1/2/3/4/5/6/7 (too many")), "{said:?}");
+    let nothing = propose(folder(&[("truth/c.csv", LOG)]).path(), "").unwrap_err().to_string();
+    assert!(nothing.contains("1 file(s); not looked at: truth (by its name"), "{nothing}");
 }
 
 #[test]

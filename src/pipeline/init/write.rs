@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::look::Inventory;
+use super::look::{Inventory, Passed, Reason};
 use super::shape::{NamePattern, PlaceNames, shape};
 use crate::pipeline::items::pattern::{Listed, Match, Pattern};
 
@@ -38,7 +38,8 @@ impl Input {
 pub struct Proposal {
     /// What to write.
     pub text: String,
-    /// Files of the sorts that it works on which its patterns leave out, in words; the text says it too.
+    /// Files of the sorts that it works on which it leaves out, and folders with such files that were not looked at, in
+    /// words; the text says it too.
     pub left_out: Vec<String>,
 }
 
@@ -68,6 +69,16 @@ pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<Proposal> {
     };
     draft.photographs(found);
     draft.recordings(found);
+    if !found.results.is_empty() {
+        draft.notes.push(format!("results of lunula, which are no recordings: {}", listed(&found.results)));
+    }
+    if !found.runs.is_empty() {
+        draft.notes.push(format!("results of `lunula run`, which are no recordings, in {}", listed(&found.runs)));
+    }
+    for (said, is_missed) in passed_over(found) {
+        draft.left_out.extend(is_missed.then(|| said.clone()));
+        draft.notes.push(said);
+    }
     if !found.unknown.is_empty() {
         draft.notes.push(format!("not known, and not used: {}", listed(&found.unknown)));
     }
@@ -88,6 +99,27 @@ pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<Proposal> {
         draft.stages
     );
     Some(Proposal { text, left_out: draft.left_out })
+}
+
+/// Folders that were not looked at, a line for each reason, and whether files of use are in them.
+pub(super) fn passed_over(found: &Inventory) -> Vec<(String, bool)> {
+    let mut kinds: Vec<(Reason, bool)> = found.passed.iter().map(|passed| (passed.reason, passed.is_missed)).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let line = |(reason, is_missed): (Reason, bool)| {
+        let of_kind = |passed: &&Passed| (passed.reason, passed.is_missed) == (reason, is_missed);
+        let paths: Vec<String> = found.passed.iter().filter(of_kind).map(|passed| passed.path.clone()).collect();
+        let why = match reason {
+            Reason::GeneratedTruth => "the truth of generated recordings",
+            Reason::Truth => "by its name it holds what is true of recordings; rename it where it holds recordings",
+            Reason::Deep => "too many folders deep; move it up, or run `lunula init` on a folder nearer to it",
+            Reason::NoRecords => {
+                "`lunula run` worked there, and which results are its is not known any more; move your own files out"
+            }
+        };
+        (format!("not looked at: {} ({why})", listed(&paths)), is_missed)
+    };
+    kinds.into_iter().map(line).collect()
 }
 
 impl Draft<'_> {

@@ -15,6 +15,7 @@ use serde::Serialize;
 use super::plan::Plan;
 use super::run::{Outcome, RunReport, TaskFailure, TaskReport};
 use crate::files::{Places, WriteError};
+use crate::pipeline::store::{PAGE, REPORT};
 use crate::pipeline::tasks::TaskId;
 
 /// A run, summed up.
@@ -236,8 +237,8 @@ fn count(counts: &mut Vec<Count>, what: &str, more: usize) {
 /// Where one of them can't be written.
 pub fn write_reports(plan: &Plan, report: &RunReport, out: &Path) -> Result<PathBuf, WriteError> {
     let summary = summary(plan, report);
-    let page = out.join("report.html");
-    let json = out.join("run.json");
+    let page = out.join(PAGE);
+    let json = out.join(REPORT);
     let refused = |why: serde_json::Error| WriteError::File { path: json.clone(), why: why.to_string() };
     let mut places = Places::default();
     places.write(&page, &page::page(&summary))?;

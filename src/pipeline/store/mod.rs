@@ -29,6 +29,11 @@ use crate::pipeline::tasks::{Task, TaskId};
 use hashes::ContentHash;
 use record::{FORMAT, Record};
 
+/// What a run did, for scripts, in the folder of results, ..
+pub(super) const REPORT: &str = "run.json";
+/// .. and for people.
+pub(super) const PAGE: &str = "report.html";
+
 /// A task that failed when it was tried last.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct FailureNote {
@@ -124,6 +129,31 @@ impl Store {
             strays.remove(&file_name(&task.id));
         });
         strays.iter().filter_map(|name| read_record(&self.records().join(name))).collect()
+    }
+}
+
+/// What a run of lunula put into a folder of results.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct MadeBefore {
+    /// The folders of its tasks, relative to the results' folder, with `/`.
+    pub(super) tasks: BTreeSet<String>,
+}
+
+impl MadeBefore {
+    /// By the records that are kept there, and where these were thrown away by the report of the run.
+    pub(super) fn of(out: &Path) -> Self {
+        let mut tasks: BTreeSet<String> = Store::new(out).strays(&[]).into_iter().map(|record| record.task).collect();
+        let report = fs::read(out.join(REPORT)).ok().and_then(|text| serde_json::from_slice::<Value>(&text).ok());
+        let reported = report.as_ref().and_then(|report| report["tasks"].as_array()).into_iter().flatten();
+        tasks.extend(reported.filter_map(|task| task["task"].as_str()).map(str::to_owned));
+        Self { tasks }
+    }
+
+    /// Whether a file or a folder, named from the results' folder, with `/`, is one of these results, or holds some.
+    pub(super) fn holds(&self, path: &str) -> bool {
+        let mut above = std::iter::successors(Some(path), |path| path.rsplit_once('/').map(|(above, _)| above));
+        let holds = |task: &String| task.strip_prefix(path).is_some_and(|rest| rest.starts_with('/'));
+        [REPORT, PAGE].contains(&path) || above.any(|above| self.tasks.contains(above)) || self.tasks.iter().any(holds)
     }
 }
 
