@@ -90,6 +90,29 @@ fn unpadded(name: &str) -> String {
     left
 }
 
+/// Digits of numbers that are compared as numbers: of more, which only names have, some numbers are one to the machine.
+const DIGITS: usize = 15;
+
+/// Whether two values of `key` say the same, written otherwise: but for case, spaces and zeros in front of numbers, as
+/// numbers (`1` and `1.0`), or where one of them is a number and the other has the key before it (`1` and `Rep1`,
+/// `rep. 01` of `repetition`).
+pub(crate) fn say_the_same(key: &str, one: &str, other: &str) -> bool {
+    let key = plain(key);
+    let [one, other] = [one, other].map(unpadded);
+    one == other || [(&one, &other), (&other, &one)].iter().any(|(number, other)| is_number(number, other, &key))
+}
+
+/// Whether a text is the same number as another, before which the key or its beginning may be written.
+fn is_number(text: &str, other: &str, key: &str) -> bool {
+    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && text.len() <= DIGITS);
+    let Some(value) = number(text) else { return false };
+    let word = other.trim_start_matches(char::is_alphabetic);
+    let (before, rest) = other.split_at(other.len() - word.len());
+    let is_of_key = !before.is_empty() && key.starts_with(before);
+    let after = if is_of_key { unpadded(rest.trim_start_matches(['_', '-', '.', ':', '#'])) } else { other.to_owned() };
+    number(&after) == Some(value)
+}
+
 /// A warning where two names of what there is one of, `Anna` and `anna`, `1` and `01`, differ in case, spaces, zeros in
 /// front of numbers or the encoding of accents only.
 pub(crate) fn twins<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
@@ -196,6 +219,37 @@ mod tests {
             said(&["S1", "s1"]),
             "subjects `S1` and `s1` differ in case or spaces only, and count apart: are they the same?"
         );
+    }
+
+    #[test]
+    fn values_that_are_one_number_say_the_same() {
+        let same = |one: &str, other: &str| {
+            let both = [(one, other), (other, one)].map(|(one, other)| say_the_same("Repetition", one, other));
+            assert_eq!(both[0], both[1], "{one} {other}");
+            both[0]
+        };
+        for other in ["1", "01", "1.0", " 1", "001.00", "Rep1", "rep_01", "Rep. 1", "repetition 1", "R1.0"] {
+            assert!(same("1", other), "{other}");
+        }
+        for (one, other) in [("S01", "s1"), ("S1", "S 001"), ("Anna", "anna"), ("0.50", "0.5"), ("-1", "-1.0")] {
+            assert!(same(one, other), "{one} {other}");
+        }
+        for (one, other) in [
+            ("S01", "S02"),
+            ("day_a", "day_b"),
+            ("1", "10"),
+            ("1", "-1"),
+            ("1", "cal1"),
+            ("1", "Rep1b"),
+            ("1", "Rep"),
+            ("Rep1", "S1"),
+            ("0.05", "0.5"),
+            ("", "Rep"),
+            ("inf", "infinity"),
+            ("12345678901234567890", "12345678901234567891"),
+        ] {
+            assert!(!same(one, other), "{one} {other}");
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::pipeline::items::pattern::{Disk, Match, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
 use crate::toml_file::Fault;
 use crate::video::FILMS;
-use crate::words::instead;
+use crate::words::{instead, say_the_same};
 
 /// How many places of one fault are listed.
 const TOLD: usize = 5;
@@ -261,10 +261,12 @@ pub(in crate::pipeline) fn check_filter<'v>(
         there.sort_unstable();
         there.dedup();
         if let Some(value) = values.iter().find(|value| !there.contains(&value.as_str())) {
-            let what = match there.len() {
-                0 => format!("nothing has a `{key}`"),
-                1..=12 => format!("nothing has {key} = \"{value}\"; {}", instead(value, &there)),
-                more => format!(
+            let same = there.iter().find(|known| say_the_same(key, known, value));
+            let what = match (there.len(), same) {
+                (0, _) => format!("nothing has a `{key}`"),
+                (_, Some(same)) => format!("nothing has {key} = \"{value}\"; did you mean `{same}`?"),
+                (1..=12, None) => format!("nothing has {key} = \"{value}\"; {}", instead(value, &there)),
+                (more, None) => format!(
                     "nothing has {key} = \"{value}\"; there are {more} others, from {} to {}",
                     there[0],
                     there[more - 1]

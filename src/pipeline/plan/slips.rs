@@ -1,17 +1,18 @@
 //! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, or
 //! that lacks it, and files whose names fit a pattern but for the case of letters, are of another format, or are not
-//! UTF-8. And what is done apart for one: values of a table or of files' names, of a key that a stage is done for each of, that differ in case
-//! and spaces only.
+//! UTF-8. And what is done apart for one: values of a table or of files' names, of a key that a stage is done for each
+//! of, that differ in case and spaces only.
 //!
-//! A value is a slip where no `where` asks for it as it is written, and it differs from one that is asked for only in
-//! case and spaces; or by one letter, where no task works on the row. Values that differ in a digit, or in their first
-//! or last letter, are numbered or lettered ones, as `S01` and `S02`, `day_a` and `day_b`.
+//! A value is a slip where no `where` asks for it as it is written, and it says the same as one that is asked for
+//! ([`say_the_same`]: case, spaces, zeros in front of numbers; `1.0` or `Rep1` for the repetition `1`); or differs from
+//! it by one letter, where no task works on the row. Values that differ in a digit otherwise, or in their first or last
+//! letter, are numbered or lettered ones, as `S01` and `S02`, `day_a` and `day_b`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::pipeline::items::InputItems;
 use crate::pipeline::spec::{Filter, From, InputSource, Spec, StageSpec};
-use crate::words::{plain, twins};
+use crate::words::{plain, say_the_same, twins};
 
 /// How many places of one slip are listed.
 const SHOWN: usize = 3;
@@ -136,7 +137,7 @@ fn of_table(
     for (cells, place) in &items.rows {
         let Some(value) = cells.get(key).filter(|value| !values.contains(value)) else { continue };
         let is_taken = taken.contains(&format!("{table}, {place}"));
-        let alike = values.iter().find(|asked| plain(asked) == plain(value));
+        let alike = values.iter().find(|asked| say_the_same(key, asked, value));
         let near = alike.or_else(|| values.iter().find(|asked| !is_taken && is_a_letter_off(value, asked)));
         if let Some(near) = near {
             slips.entry((value, *near)).or_default().push(place);

@@ -317,6 +317,36 @@ fn rows_that_a_slip_leaves_out_are_warned_of_with_the_nearest_value() {
 }
 
 #[test]
+fn rows_whose_value_is_the_same_number_are_warned_of() {
+    let rows = |sessions: [&str; 4]| sessions.map(|session| format!("S01,{session},touch,,l/S0{session}.csv"));
+    let plan = |sessions: [&str; 4], asked: &str| {
+        let model = "[inputs.all]\ntable = \"sessions.csv\"\n[stage.model]\njob = \"train\"\n";
+        let data = format!("data = {{ from = \"all.log\", where = {{ session = [{asked}] }} }}\n");
+        let rows = rows(sessions);
+        bench_of(&rows.each_ref().map(String::as_str)).try_plan(&format!("{model}{data}"))
+    };
+    let said = |sessions, asked| {
+        let warnings = plan(sessions, asked).unwrap_or_else(|why| panic!("{why}")).warnings;
+        warnings.into_iter().filter(|what| what.contains("did you mean")).collect::<Vec<_>>()
+    };
+    for other in ["01", "1.0", "001", "Session1", "S_01"] {
+        let what = format!(
+            "sessions.csv, line 3: session = \"{other}\" is left out where a `where` asks for \"1\"; did you mean `1`?"
+        );
+        assert_eq!(said(["1", other, "3", "10"], "\"1\""), [what]);
+    }
+    assert_eq!(said(["S01", "S02", "day_a", "day_b"], "\"S01\", \"day_a\""), [""; 0]);
+    assert_eq!(said(["1", "2", "11", "cal1"], "\"1\""), [""; 0]);
+    // Where no row has it, the refusal names that one.
+    for (sessions, same) in
+        [(["10", "01", "2", "3"], "01"), (["11", "12", "1.0", "0"], "1.0"), (["2", "3", "4", "S1"], "S1")]
+    {
+        let why = plan(sessions, "\"1\"").err().map(|why| why.to_string()).unwrap_or_default();
+        assert!(why.ends_with(&format!("nothing has session = \"1\"; did you mean `{same}`?")), "{why}");
+    }
+}
+
+#[test]
 fn values_that_a_stage_is_done_for_each_of_and_that_are_all_but_the_same_are_warned_of() {
     let model = "[stage.model]\njob = \"train\"\ndata = \"sets\"\neach = [\"subject\"]\n";
     let each = STUDY.replace("[\"sets\"]", "[\"sets\", \"model\"]") + model;
