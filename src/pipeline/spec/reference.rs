@@ -3,8 +3,10 @@
 use toml::de::DeValue;
 
 use super::{Filter, From, Header, InputSource, InputSpec, Place, Reference};
+use crate::photograph::PICTURES;
 use crate::toml_file::{Entry, Findings, entries};
-use crate::words::instead;
+use crate::video::FILMS;
+use crate::words::{instead, nearest};
 
 /// What references may name.
 pub(super) struct Names<'a> {
@@ -96,11 +98,11 @@ pub(super) fn reference(
             return None;
         }
     };
-    let from = resolve(findings, &said, said_at, names)?;
+    let from = resolve(findings, role, &said, said_at, names)?;
     Some(Reference { from, filter, at: said_at, said })
 }
 
-fn resolve(findings: &mut Findings<'_>, said: &str, at: Place, names: &mut Names<'_>) -> Option<From> {
+fn resolve(findings: &mut Findings<'_>, role: &str, said: &str, at: Place, names: &mut Names<'_>) -> Option<From> {
     let (name, part) = said.split_once('.').map_or((said, None), |(name, part)| (name, Some(part)));
     if let Some(input) = names.inputs.iter().position(|input| input.name == name) {
         let columns = &mut names.inputs[input];
@@ -144,6 +146,39 @@ fn resolve(findings: &mut Findings<'_>, said: &str, at: Place, names: &mut Names
         .map(|input| input.name.as_str())
         .chain(names.stages.iter().map(|s| s.name.as_str()))
         .collect();
-    findings.fault(at, format!("`{name}` is neither an input nor a stage; {}", instead(name, &known)));
+    let what = match file_input(said, &known) {
+        Some(input) if nearest(name, &known).is_none() => {
+            let files = toml::Value::from(said);
+            format!(
+                "`{said}` is a file's name, and `{role}` names an input or a stage; write [inputs.{input}] with \
+                 files = {files}, and {role} = \"{input}\" here"
+            )
+        }
+        _ => format!("`{name}` is neither an input nor a stage; {}", instead(name, &known)),
+    };
+    findings.fault(at, what);
     None
+}
+
+/// Endings of files that roles are given.
+const ENDINGS: [&str; 9] = ["csv", "parquet", "gz", "xdf", "toml", "json", "npy", "npz", "html"];
+
+/// What to call the input of a file that is named in place of an input; none where it is no file's name.
+fn file_input(said: &str, known: &[&str]) -> Option<String> {
+    let (folder, file) = said.rsplit_once('/').map_or(("", said), |(folder, file)| (folder, file));
+    let ending = file.rsplit_once('.').map_or(String::new(), |(_, ending)| ending.to_lowercase());
+    let is_known = [&ENDINGS[..], &PICTURES, &FILMS].concat().contains(&ending.as_str());
+    if !is_known && !said.contains('/') {
+        return None;
+    }
+    let stem = file.split('.').next().unwrap_or_default();
+    let places = |c: char| c == '{' || c == '}';
+    let above = || folder.rsplit('/').find(|part| !part.contains(places)).unwrap_or_default();
+    let stem = if stem.contains(places) { above() } else { stem };
+    let name: String = stem.chars().filter(|c| c.is_alphanumeric() || *c == '_' || *c == '-').collect();
+    Some(match name.as_str() {
+        "" => "files".to_owned(),
+        name if known.contains(&name) => format!("{name}_files"),
+        name => name.to_owned(),
+    })
 }

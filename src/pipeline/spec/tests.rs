@@ -80,6 +80,24 @@ fn misspelt_keys_and_unknown_names_are_told_with_the_nearest() {
         ("sync = ", "snyc = ", "17:1: unknown key of the job `tie`: `snyc`; did you mean `sync`?"),
         ("\"tie\"", "\"tei\"", "14:7: no job `tei`; did you mean `tie`?"),
         ("\"angles\"", "\"angels\"", "15:10: `angels` is neither an input nor a stage; did you mean `angles`?"),
+        (
+            "\"markers\"",
+            "\"my.toml\"",
+            "22:11: `my.toml` is a file's name, and `markers` names an input or a stage; write [inputs.my] with \
+             files = \"my.toml\", and markers = \"my\" here",
+        ),
+        (
+            "\"markers\"",
+            "\"films/{subject}/angles.mp4\"",
+            "22:11: `films/{subject}/angles.mp4` is a file's name, and `markers` names an input or a stage; write \
+             [inputs.angles_files] with files = \"films/{subject}/angles.mp4\", and markers = \"angles_files\" here",
+        ),
+        ("\"markers\"", "\"my\"", "22:11: `my` is neither an input nor a stage; known: bending, markers, sets, angles"),
+        (
+            "\"bending.video\"",
+            "\"bendnig.csv\"",
+            "21:9: `bendnig` is neither an input nor a stage; did you mean `bending`?",
+        ),
         ("\"angles\"", "\"angles.joint\"", "15:10: the job `track` makes no `joint`; did you mean `joints`?"),
         ("\"markers\"", "\"markers.x\"", "22:11: `markers` are files and have no columns; write \"markers\""),
         ("[\"sets\"]", "[\"set\"]", "4:11: `set` is wanted, and no stage makes it; did you mean `sets`?"),
