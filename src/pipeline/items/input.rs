@@ -9,6 +9,7 @@ use crate::photo::MASKS;
 use crate::photograph::PICTURES;
 use crate::pipeline::items::pattern::{Disk, Match, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
+use crate::pipeline::store::MadeBefore;
 use crate::toml_file::Fault;
 use crate::video::FILMS;
 use crate::words::{instead, say_the_same};
@@ -71,6 +72,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         pattern.find(&world.listed)
     } else {
         let disk = Disk { base: world.base.clone(), out: world.out.canonicalize().ok() };
+        within_results(&pattern, &input.filter, &disk, said, world).map_err(fault)?;
         let found = pattern.find(&disk);
         let paths: BTreeSet<&str> = found.matches.iter().map(|found| found.path.as_str()).collect();
         let others = pattern.in_any_case().map_or_else(Vec::new, |pattern| pattern.find(&disk).matches);
@@ -89,7 +91,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     };
     if let Some(why) = found.nothing {
         let why = if inside.is_some() { format!("of the generated recordings, {why}") } else { why };
-        return Err(fault(format!("nothing matches `{said}`: {why}")));
+        return Err(fault(nothing_matches(said, &why)));
     }
     if !found.ambiguous.is_empty() {
         let listed = found.ambiguous[..found.ambiguous.len().min(TOLD)].join("; ");
@@ -120,6 +122,55 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     }
     let (columns, not_utf8) = (pattern.names, found.not_utf8);
     Ok(InputItems { relations: vec![relation], columns, rows: Vec::new(), in_other_case, in_other_format, not_utf8 })
+}
+
+fn nothing_matches(said: &str, why: &str) -> String {
+    format!("nothing matches `{said}`: {why}")
+}
+
+/// Refuses files that a pattern finds in the folder of results, unless a run made them: they would be left out.
+fn within_results(
+    pattern: &Pattern,
+    filter: &Filter,
+    disk: &Disk,
+    said: &str,
+    world: &World<'_>,
+) -> Result<(), String> {
+    let Some(out) = &disk.out else { return Ok(()) };
+    let found = pattern.find(&Disk { base: disk.base.clone(), out: None });
+    if let Some(why) = found.nothing {
+        return Err(nothing_matches(said, &why));
+    }
+    let everywhere: Vec<Match> = found.matches.into_iter().filter(|found| holds(filter, &found.keys)).collect();
+    let inside = |found: &Match| {
+        let path = world.at(&found.path).canonicalize().ok()?;
+        let inside = path.strip_prefix(out).ok()?.to_string_lossy().replace('\\', "/");
+        (!inside.is_empty()).then_some(inside)
+    };
+    let inside: Vec<(&str, String)> =
+        everywhere.iter().filter_map(|found| Some((found.path.as_str(), inside(found)?))).collect();
+    if inside.is_empty() {
+        return Ok(());
+    }
+    let made = MadeBefore::of(out);
+    let own: Vec<&str> = inside.iter().filter(|(_, inside)| !made.holds(inside)).map(|(path, _)| *path).collect();
+    let results = world.out.display();
+    if own.is_empty() && inside.len() == everywhere.len() {
+        return Err(format!(
+            "`{said}` finds nothing but results of an earlier run in {results}, where this one's go; name the stage \
+             that makes them, or choose another --out"
+        ));
+    }
+    if own.is_empty() {
+        return Ok(());
+    }
+    Err(format!(
+        "`{said}` finds {} file(s) in {results}, where results go and no inputs are looked for: {}{}; choose a folder \
+         of its own for --out",
+        own.len(),
+        own[..own.len().min(TOLD)].join(", "),
+        if own.len() > TOLD { ", .." } else { "" }
+    ))
 }
 
 fn of_table(
