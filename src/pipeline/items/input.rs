@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::table::{Rows, read};
-use super::{Item, Missing, Origin, Relation, World, holds, plain};
+use super::{Item, Lacking, Origin, Relation, World, holds, plain};
 use crate::job::Keys;
 use crate::photo::MASKS;
 use crate::photograph::PICTURES;
@@ -116,7 +116,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     check_filter(spec, &input.filter, &pattern.names, |key| {
         items.iter().filter_map(|item| item.columns.get(key)).collect()
     })?;
-    let relation = Relation { names: pattern.names.clone(), items, missing: Vec::new() }.only(&input.filter);
+    let relation = Relation { names: pattern.names.clone(), items, lacking: Vec::new() }.only(&input.filter);
     if relation.items.is_empty() {
         return Err(nothing_left(spec, input));
     }
@@ -235,23 +235,16 @@ fn of_table(
         .iter()
         .map(|&file| {
             let mut relation = Relation { names: names.clone(), ..Relation::default() };
-            let mut without = 0;
             for &row in &taken {
                 let (cells, place) = &rows.rows[row];
+                let (keys, columns) = (rows.known(row, key_columns.iter().copied()), rows.known(row, 0..known.len()));
                 if cells[file].is_empty() {
-                    without += 1;
+                    let reason = format!("{named} names no `{}` for it", rows.columns[file]);
+                    relation.lacking.push(Lacking { keys, columns, reason });
                     continue;
                 }
-                relation.items.push(Item {
-                    keys: rows.known(row, key_columns.iter().copied()),
-                    columns: rows.known(row, 0..known.len()),
-                    origin: origin(&cells[file], rows, world),
-                    place: format!("{named}, {place}"),
-                });
-            }
-            if without > 0 {
-                let reason = format!("{named} names no `{}` for it", rows.columns[file]);
-                relation.missing.push(Missing { reason, count: without });
+                let place = format!("{named}, {place}");
+                relation.items.push(Item { keys, columns, origin: origin(&cells[file], rows, world), place });
             }
             relation
         })

@@ -53,12 +53,21 @@ pub(super) struct Missing {
     pub(super) count: usize,
 }
 
+/// A row of a table that names no file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Lacking {
+    pub(super) keys: Keys,
+    /// All that is known of it by name, for `where`.
+    pub(super) columns: Keys,
+    pub(super) reason: String,
+}
+
 /// Items with the names of their keys, in order.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Relation {
     pub(super) names: Vec<String>,
     pub(super) items: Vec<Item>,
-    pub(super) missing: Vec<Missing>,
+    pub(super) lacking: Vec<Lacking>,
 }
 
 /// Where inputs are looked for.
@@ -106,6 +115,7 @@ impl Relation {
     /// The items for which a filter holds.
     pub(super) fn only(mut self, filter: &Filter) -> Self {
         self.items.retain(|item| holds(filter, &item.columns));
+        self.lacking.retain(|row| holds(filter, &row.columns));
         self
     }
 
@@ -117,13 +127,18 @@ impl Relation {
             }
         }
         self.items.extend(other.items);
-        self.missing.extend(other.missing);
+        self.lacking.extend(other.lacking);
     }
 }
 
 /// Whether what is known has one of the values, of every key of the filter.
 pub(super) fn holds(filter: &Filter, known: &Keys) -> bool {
     filter.iter().all(|(key, values, _)| known.get(key).is_some_and(|value| values.iter().any(|v| v == value)))
+}
+
+/// Whether a filter leaves out what has these keys, as far as they say it.
+pub(super) fn leaves_out(filter: &Filter, keys: &Keys) -> bool {
+    filter.iter().any(|(key, values, _)| keys.get(key).is_some_and(|value| !values.iter().any(|v| v == value)))
 }
 
 /// A path without `.` and without `..` after a name.

@@ -9,7 +9,9 @@ use super::rows::{Row, stage_rows};
 use super::slips::{empty_keys, slips};
 use super::{Layout, Node, NodeInput, NodeSource};
 use crate::job::{Facts, Takes};
-use crate::pipeline::items::{InputItems, Item, Missing, Origin, Relation, World, check_filter, input_items, plain};
+use crate::pipeline::items::{
+    InputItems, Item, Missing, Origin, Relation, World, check_filter, input_items, leaves_out, plain,
+};
 use crate::pipeline::spec::{From, Reference, Spec, StageSpec};
 use crate::toml_file::Fault;
 
@@ -186,7 +188,7 @@ fn items_of(
                 },
                 place: layout.nodes[node].id.clone(),
             };
-            let relation = Relation { names: names.clone(), items: nodes.map(item).collect(), missing: Vec::new() };
+            let relation = Relation { names: names.clone(), items: nodes.map(item).collect(), lacking: Vec::new() };
             (relation, Some(names))
         }
     };
@@ -209,10 +211,8 @@ fn filter_stage(spec: &Spec, stage: &StageSpec, given: &mut [Relation]) -> Resul
         given.iter().flat_map(|relation| &relation.items).filter_map(|item| item.keys.get(key)).collect()
     })?;
     for relation in given {
-        relation.items.retain(|item| {
-            let fits = |value: &str, values: &[String]| values.iter().any(|one| one == value);
-            stage.filter.iter().all(|(key, values, _)| item.keys.get(key).is_none_or(|value| fits(value, values)))
-        });
+        relation.items.retain(|item| !leaves_out(&stage.filter, &item.keys));
+        relation.lacking.retain(|row| !leaves_out(&stage.filter, &row.keys));
     }
     Ok(())
 }

@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::job::{Keys, Takes};
-use crate::pipeline::items::{Index, Item, JoinedRows, Missing, Relation, Unjoined, join};
-use crate::pipeline::spec::{Spec, StageSpec};
+use crate::pipeline::items::{Index, Item, JoinedRows, Missing, Relation, Unjoined, join, leaves_out};
+use crate::pipeline::spec::{From, Reference, Spec, StageSpec};
 use crate::toml_file::Fault;
 use crate::words::instead;
 
@@ -38,12 +38,15 @@ pub(super) fn stage_rows(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> 
     }
     let each = each(spec, stage, given).map_err(|fault| vec![fault])?;
 
-    let mut left_out: Vec<Missing> = given.iter().flat_map(|relation| relation.missing.clone()).collect();
+    let mut left_out = lacking_files(spec, stage, given);
     let relations: Vec<&Relation> = single.iter().map(|&role| &given[role]).collect();
     let mut joined =
         join(&relations).map_err(|(one, other)| vec![unrelated(spec, stage, given, single[one], single[other])])?;
-    for unjoined in &joined.unjoined {
-        left_out.push(alone(stage, unjoined, &single));
+    for unjoined in &mut joined.unjoined {
+        unjoined.keys.retain(|keys| !is_left_by_choice(spec, stage, keys));
+        if !unjoined.keys.is_empty() {
+            left_out.push(alone(stage, unjoined, &single));
+        }
     }
     if single.is_empty() && many.is_empty() {
         joined.rows = vec![(Keys::default(), Vec::new())];
@@ -99,6 +102,53 @@ pub(super) fn stage_rows(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> 
     if faults.is_empty() { Ok(StageRows { names, rows, left_out }) } else { Err(faults) }
 }
 
+/// The rows that name no file for a stage, counted by reason, without those that a `where` leaves out.
+fn lacking_files(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> Vec<Missing> {
+    let mut left_out: Vec<Missing> = Vec::new();
+    for row in given.iter().flat_map(|relation| &relation.lacking) {
+        if is_left_by_choice(spec, stage, &row.keys) {
+            continue;
+        }
+        match left_out.iter_mut().find(|missing| missing.reason == row.reason) {
+            Some(missing) => missing.count += 1,
+            None => left_out.push(Missing { reason: row.reason.clone(), count: 1 }),
+        }
+    }
+    left_out
+}
+
+/// Whether what has these keys is meant to be in no task of a stage: a `where` of what each task needs leaves it out,
+/// here or in the stages before.
+fn is_left_by_choice(spec: &Spec, stage: &StageSpec, keys: &Keys) -> bool {
+    let is_left = |reference: &Reference| {
+        let before = match reference.from {
+            From::Input(input, _) => leaves_out(&spec.inputs[input].filter, keys),
+            From::Stage(before, _) => {
+                let before = &spec.stages[before];
+                // Results of what is gathered are of all that have these keys.
+                let own = gathered_by(before).map(|names| keys.only(names.into_iter()));
+                is_left_by_choice(spec, before, own.as_ref().unwrap_or(keys))
+            }
+        };
+        before || leaves_out(&reference.filter, keys)
+    };
+    let is_needed = |role: usize| matches!(stage.kind.roles[role].takes, Takes::One | Takes::Many);
+    let mut needed = stage.roles.iter().enumerate().filter(|(role, _)| is_needed(*role)).map(|(_, named)| named);
+    leaves_out(&stage.filter, keys) || needed.any(|named| !named.is_empty() && named.iter().all(is_left))
+}
+
+/// The keys that a stage is done for each of, where it says them or its job gathers by them.
+fn gathered_by(stage: &StageSpec) -> Option<Vec<&str>> {
+    let own = || if gathers(stage) { Some(stage.prepared.each().to_vec()) } else { None };
+    stage.each.as_ref().map(|(each, _)| each.iter().map(String::as_str).collect()).or_else(own)
+}
+
+/// Whether a stage's job works on what it gathers alone.
+fn gathers(stage: &StageSpec) -> bool {
+    let some = |takes: Takes| stage.kind.roles.iter().any(|role| role.takes == takes);
+    !some(Takes::One) && (some(Takes::Many) || some(Takes::AnyNumber))
+}
+
 /// The keys that a stage is done for each of: as it says, or as its job does.
 fn each(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> Result<Option<Vec<String>>, Fault> {
     let mut known: Vec<&str> = given.iter().flat_map(|relation| &relation.names).map(String::as_str).collect();
@@ -115,10 +165,8 @@ fn each(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> Result<Option<Vec
         }
         return Ok(Some(each.clone()));
     }
-    let some = |takes: Takes| stage.kind.roles.iter().any(|role| role.takes == takes);
-    let gathers = !some(Takes::One) && (some(Takes::Many) || some(Takes::AnyNumber));
     let own = stage.prepared.each().iter().filter(|key| known.contains(key)).map(|key| (*key).to_owned()).collect();
-    Ok(gathers.then_some(own))
+    Ok(gathers(stage).then_some(own))
 }
 
 /// For a job that only gathers: every combination of the keys' values that some item has.

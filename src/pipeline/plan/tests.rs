@@ -94,6 +94,66 @@ sets (tie)            run       2: never made
 }
 
 #[test]
+fn rows_that_a_where_leaves_out_are_not_counted_as_lacking_a_file() {
+    let of_all = STUDY
+        .replace("where = { kind = \"bending\" }\n", "")
+        .replace("video = \"bending.video\"", "video = { from = \"bending.video\", where = { kind = \"bending\" } }");
+    let bench = bench_with(
+        "sessions.csv",
+        "subject,session,kind,video,log\nS01,1,bending,v/S01.mp4,l/S01.csv\nS02,1,bending,,l/S02.csv\n\
+         S02,2,touch,,l/S02b.csv\nS03,1,touch,,l/S03.csv\n",
+    );
+    let left_out = |text: &str| -> Vec<String> {
+        let stages = bench.plan(text).stage_plans(&[]);
+        let lines = stages.iter().flat_map(|stage| stage.tasks.iter().map(move |line| (&stage.stage, line)));
+        let left = lines.filter(|(_, line)| line.fate == PlanFate::LeftOut);
+        left.map(|(stage, line)| format!("{stage} {}: {}", line.count, line.reason)).collect()
+    };
+    let one = "angles 1: sessions.csv names no `video` for it";
+    let alone = "sets 1: its `log` has no `joints`: kind=bending session=1 subject=S02";
+    assert_eq!(left_out(&of_all), [one, alone]);
+    // The same by the stage's own `where`, and without any.
+    let by_stage = of_all.replace(
+        "video = { from = \"bending.video\", where = { kind = \"bending\" } }",
+        "video = \"bending.video\"\nwhere = { kind = \"bending\" }",
+    );
+    assert_eq!(left_out(&by_stage), [one, alone]);
+    let without = of_all.replace(", where = { kind = \"bending\" }", "");
+    let said = left_out(&without);
+    assert!(said[0] == "angles 3: sessions.csv names no `video` for it" && said[1].starts_with("sets 3: "), "{said:?}");
+    // Models are for all rows of a subject, whichever rows they were made of.
+    let models = "wanted = [\"errors\"]\n[inputs.all]\ntable = \"sessions.csv\"\n[stage.model]\njob = \"train\"\n\
+                  each = [\"subject\"]\ndata = { from = \"all.log\", where = { kind = \"touch\" } }\n[stage.pred]\n\
+                  job = \"tie\"\njoints = \"model\"\nlog = \"all.log\"\n\
+                  [stage.errors]\njob = \"train\"\ndata = \"pred\"\n";
+    assert_eq!(left_out(models), ["pred 1: its `log` has no `joints`: kind=bending session=1 subject=S01"]);
+}
+
+#[test]
+fn files_in_the_folder_of_results_that_no_run_made_are_refused() {
+    let text = "[inputs.logs]\nfiles = \"{day}/{n}.csv\"\n[stage.model]\njob = \"train\"\ndata = \"logs\"\n";
+    let logs = [("mon/a.csv", "1"), ("tue/a.csv", "2")];
+    let bench = |more: &[(&str, &str)]| Bench::new(&[&logs[..], more].concat());
+    let task = ("out/run.json", "{\"tasks\": [{\"task\": \"model\"}, {\"task\": \"x\"}]}");
+    let earlier = [task, ("out/model/merit.csv", "3"), ("out/x/b.csv", "4")];
+    assert_eq!(bench(&earlier).plan(&text.replace("{day}", "**")).tasks[0].inputs.len(), 2);
+    let own = [&earlier[..], &[("out/wed.csv", "5")]].concat();
+    let faults = bench(&own).faults(text);
+    let out = "/out, where results go and no inputs are looked for: out/wed.csv; choose a folder of its own for --out";
+    assert!(faults.len() == 1 && faults[0].starts_with("2:9: `{day}/{n}.csv` finds 1 file(s) in "), "{faults:?}");
+    assert!(faults[0].ends_with(out), "{faults:?}");
+    // Above all inputs, and results of an earlier run named as inputs.
+    let inside = text.replace("{day}", "out/{day}");
+    let faults = bench(&[("out/mon/a.csv", "1"), ("out/tue/a.csv", "2")]).faults(&inside);
+    assert!(
+        faults[0].contains("finds 2 file(s) in ") && faults[0].contains(": out/mon/a.csv, out/tue/a.csv;"),
+        "{faults:?}"
+    );
+    let faults = bench(&earlier).faults(&inside);
+    assert!(faults[0].contains("finds nothing but results of an earlier run in "), "{faults:?}");
+}
+
+#[test]
 fn a_stage_that_nothing_wanted_needs_is_left_out_and_its_inputs_are_not_looked_at() {
     let more =
         format!("{STUDY}[inputs.none]\nfiles = \"nowhere/*.csv\"\n[stage.model]\njob = \"train\"\ndata = \"none\"\n");
