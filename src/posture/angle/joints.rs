@@ -191,6 +191,7 @@ impl Angles {
         let places = spots.iter().map(|spot| spot.as_ref().map(|spot| spot.at_px)).collect();
         let turned: Vec<Option<[f64; 2]>> =
             angles.iter().map(|angle| angle.map(|angle| [angle.rad, angle.sd_rad])).collect();
+        self.lengths.next_frame();
         self.cut.add(&turned);
         self.frozen.add(places, turned);
         AngleRow { angles, lost }

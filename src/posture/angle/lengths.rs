@@ -2,7 +2,8 @@
 //!
 //! In: from frame to frame the places of both ends of a segment. Out: the segments whose lengths vary by more than skin
 //! that slides explains, or by less while one end stands still and the other moves, as where something of a marker's
-//! colour on the table was taken for it ([`Lengths::changing`]).
+//! colour on the table was taken for it ([`Lengths::changing`]): in all frames, or from when it was found again to when
+//! it was lost.
 //!
 //! Measured on 16 videos of two phantoms (480x270, the fingertip's marker hidden in the first second, a disc of its
 //! colour 22 or 28 px beside it): in 11 the disc was followed, J3 32 to 75 degrees off; its segment's length varied by
@@ -21,14 +22,43 @@ const MOVES: f64 = 0.1;
 const ALIKE: f64 = 1.25;
 /// Below so many frames of a segment it has no say.
 const FRAMES: f64 = 20.0;
+/// ... and of frames running below so many (assumed; another finger's mark was followed for 14).
+const RUNNING: f64 = 10.0;
 
 /// What the segments of one video say.
 #[derive(Debug, Clone)]
 pub(super) struct Lengths {
-    segments: Vec<Sums>,
+    segments: Vec<Segment>,
+    /// Frames so far.
+    frames: u64,
 }
 
 /// Of one segment.
+#[derive(Debug, Clone, Default)]
+struct Segment {
+    /// All its frames.
+    all: Sums,
+    /// Those running up to the last one that shows it.
+    run: Run,
+    /// Earlier runs in which one end stands still and the length varies.
+    doubted: Vec<Run>,
+}
+
+/// Frames running.
+#[derive(Debug, Clone, Default)]
+struct Run {
+    first: u64,
+    last: u64,
+    sums: Sums,
+}
+
+impl Run {
+    fn is_doubted(&self) -> bool {
+        self.sums.length.count >= RUNNING && self.sums.is_to_something_still()
+    }
+}
+
+/// Of a segment over some frames.
 #[derive(Debug, Clone, Default)]
 struct Sums {
     length: Moments,
@@ -40,6 +70,19 @@ impl Sums {
     /// The standard deviation of its length over the mean.
     fn share(&self) -> f64 {
         self.length.variance().sqrt() / self.length.mean
+    }
+
+    fn add(&mut self, ends_px: [[f64; 2]; 2]) {
+        self.length.add((ends_px[1][0] - ends_px[0][0]).hypot(ends_px[1][1] - ends_px[0][1]));
+        for (moments, at) in self.ends.iter_mut().flatten().zip(ends_px.into_iter().flatten()) {
+            moments.add(at);
+        }
+    }
+
+    /// Whether one end stands still, the other moves, and the length varies by more than is a segment's.
+    fn is_to_something_still(&self) -> bool {
+        let moved = self.ends.map(|end| (end[0].variance() + end[1].variance()).sqrt() / self.length.mean);
+        moved[0].min(moved[1]) < STILL && moved[0].max(moved[1]) > MOVES && self.share() > MOST_STILL_SD
     }
 }
 
@@ -66,24 +109,32 @@ impl Moments {
 
 impl Lengths {
     pub(super) fn new(segments: usize) -> Self {
-        Self { segments: vec![Sums::default(); segments] }
+        Self { segments: vec![Segment::default(); segments], frames: 0 }
     }
 
-    /// Takes the places of a segment's ends in one frame.
+    /// Takes the places of a segment's ends in the frame at hand.
     pub(super) fn add(&mut self, segment: usize, ends_px: [[f64; 2]; 2]) {
-        let sums = &mut self.segments[segment];
-        sums.length.add((ends_px[1][0] - ends_px[0][0]).hypot(ends_px[1][1] - ends_px[0][1]));
-        for (moments, at) in sums.ends.iter_mut().flatten().zip(ends_px.into_iter().flatten()) {
-            moments.add(at);
+        let Segment { all, run, doubted } = &mut self.segments[segment];
+        all.add(ends_px);
+        if run.sums.length.count == 0.0 || run.last + 1 < self.frames {
+            let before = std::mem::replace(run, Run { first: self.frames, ..Run::default() });
+            doubted.extend(Some(before).filter(Run::is_doubted));
         }
+        run.last = self.frames;
+        run.sums.add(ends_px);
+    }
+
+    /// Goes on to the next frame.
+    pub(super) fn next_frame(&mut self) {
+        self.frames += 1;
     }
 
     /// That all segments change their lengths alike.
     pub(super) fn zoomed(&self) -> Option<String> {
-        let shares = || self.segments.iter().map(Sums::share);
+        let shares = || self.segments.iter().map(|segment| segment.all.share());
         let [least, most] =
             shares().fold([f64::INFINITY, 0.0], |[least, most], share| [share.min(least), share.max(most)]);
-        let enough = self.segments.len() > 1 && self.segments.iter().all(|sums| sums.length.count >= FRAMES);
+        let enough = self.segments.len() > 1 && self.segments.iter().all(|segment| segment.all.length.count >= FRAMES);
         (enough && least > MOST_SD && most < ALIKE * least).then(|| {
             format!(
                 "all segments change their lengths alike, by {:.0} % (the standard deviation over frames): did the \
@@ -99,23 +150,36 @@ impl Lengths {
         if self.zoomed().is_some() {
             return Vec::new();
         }
-        let changes = |(segment, sums): (usize, &Sums)| {
-            let mean = sums.length.mean;
-            let share = sums.share();
-            let moved = sums.ends.map(|end| (end[0].variance() + end[1].variance()).sqrt() / mean);
-            let still = moved[0].min(moved[1]) < STILL && moved[0].max(moved[1]) > MOVES;
-            let doubted = share > MOST_SD || still && share > MOST_STILL_SD;
-            (sums.length.count >= FRAMES && doubted).then(|| {
-                let text = format!(
-                    "changes its length by {:.0} % (the standard deviation over frames){}: is one of the two markers \
-                     hidden in part, or another thing of its colour followed for it? --overlay shows what was followed",
-                    100.0 * share,
-                    if still { " while one of its ends stands still and the other moves" } else { "" }
-                );
-                (segment, text)
-            })
-        };
+        let changes = |(number, segment): (usize, &Segment)| Some((number, segment.changes()?));
         self.segments.iter().enumerate().filter_map(changes).collect()
+    }
+}
+
+impl Segment {
+    /// What to say of it, if it is doubted.
+    fn changes(&self) -> Option<String> {
+        if self.all.length.count < FRAMES {
+            return None;
+        }
+        let still = self.all.is_to_something_still();
+        let (share, when) = if still || self.all.share() > MOST_SD {
+            (self.all.share(), String::new())
+        } else {
+            let runs: Vec<&Run> = self.doubted.iter().chain(Some(&self.run).filter(|run| run.is_doubted())).collect();
+            let first = runs.first()?;
+            let others = match runs.len() {
+                1 => String::new(),
+                count => format!(", and in {} other place(s)", count - 1),
+            };
+            (first.sums.share(), format!(" in frames {} to {}{others}", first.first, first.last))
+        };
+        let end =
+            if still || !when.is_empty() { " while one of its ends stands still and the other moves" } else { "" };
+        Some(format!(
+            "changes its length by {:.0} % (the standard deviation over frames){end}{when}: is one of the two markers \
+             hidden in part, or another thing of its colour followed for it? --overlay shows what was followed",
+            100.0 * share
+        ))
     }
 }
 
@@ -132,6 +196,7 @@ mod tests {
             let tip = [joint[0] + 30.0 * bent.cos(), joint[1] + 30.0 * bent.sin()];
             lengths.add(0, [[0.0, 0.0], joint]);
             lengths.add(1, [joint, still.unwrap_or(tip)]);
+            lengths.next_frame();
         }
         lengths.changing()
     }
@@ -150,6 +215,31 @@ mod tests {
     }
 
     #[test]
+    fn another_mark_that_is_followed_for_some_frames_is_named_with_these() {
+        // It turns by 0.02 a frame; from the 90th on the distal end passes by a mark that stands still.
+        let taken = |frames: u64| {
+            let mut lengths = Lengths::new(1);
+            for frame in 0..200 {
+                let rad = 0.02 * frame as f64;
+                let tip = [50.0 * rad.cos(), 50.0 * rad.sin()];
+                let passes = [30.0 * (frame as f64 - 97.0) / 7.0, 45.0];
+                match frame {
+                    90.. if frame < 90 + frames => lengths.add(0, [[0.0; 2], passes]),
+                    // It is lost before and behind.
+                    80..110 => {}
+                    _ => lengths.add(0, [[0.0; 2], tip]),
+                }
+                lengths.next_frame();
+            }
+            lengths.changing()
+        };
+        let all = taken(14);
+        assert!(all.len() == 1 && all[0].1.contains("still and the other moves in frames 90 to 103: "), "{all:?}");
+        assert_eq!(taken(9), []);
+        assert_eq!(taken(0), []);
+    }
+
+    #[test]
     fn where_all_lengths_change_alike_the_camera_zooms() {
         let all = |factors: [f64; 2]| {
             let mut lengths = Lengths::new(2);
@@ -158,6 +248,7 @@ mod tests {
                 for (segment, factor) in factors.into_iter().enumerate() {
                     lengths.add(segment, [[0.0, 0.0], [30.0 * (1.0 + factor * zoom), 0.0]]);
                 }
+                lengths.next_frame();
             }
             (lengths.zoomed().is_some(), lengths.changing().len())
         };
@@ -176,6 +267,8 @@ mod tests {
             // The fingertip on a table, the joint above it bends.
             let rad = 1.2 * bent;
             rests.add(0, [[30.0 * rad.cos(), -30.0 * rad.sin()], [0.0, 0.02 * f64::from(frame % 5)]]);
+            slides.next_frame();
+            rests.next_frame();
         }
         assert_eq!(slides.changing(), []);
         assert_eq!(rests.changing(), []);
