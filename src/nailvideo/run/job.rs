@@ -406,11 +406,14 @@ impl Job<'_> {
         let (traces, whole) = traces(&names, kept, self.light, enlarged);
         let noise: Vec<Option<f64>> = traces.iter().map(|trace| noise_sd(&trace.values)).collect();
         let lasting = sampler.noise_sd().unwrap_or(0.0);
+        // What a photodiode's values err by where the nail rests.
+        let least_sd: Vec<Option<f64>> =
+            noise.iter().map(|noise| noise.map(|noise| enlarged * noise.max(lasting))).collect();
         let sd = |k: usize, row: usize, one: &Sampled, se_px: f32| {
             // The place's error has two axes, the slope is along the steeper.
             let moved = f64::from(one.slope_per_px * se_px) / 2.0_f64.sqrt();
             let tint = traces[k].tint[row];
-            noise[k].map(|noise| (enlarged * noise.max(lasting)).hypot(one.steady_sd.into()).hypot(moved).hypot(tint))
+            least_sd[k].map(|least_sd| least_sd.hypot(one.steady_sd.into()).hypot(moved).hypot(tint))
         };
         self.stages.time("write", || photodiodes(self.staging, self.outputs, &names, self.light, kept, sd))?;
         let skin: Vec<f64> = kept.iter().map(|row| row.skin).collect();
@@ -459,7 +462,7 @@ impl Job<'_> {
             report.warnings.push("the video is grey: light is not taken off (--light none)".to_owned());
         }
         report.warnings.extend(repeated(&traces, &noise, |row| kept[row].index));
-        report.warnings.extend(leaps(&traces, |row| kept[row].index));
+        report.warnings.extend(leaps(&traces, &least_sd, |row| kept[row].index));
         report.warnings.extend(reversed(&pressed));
         let tints = traces.iter().map(|trace| (trace.name.as_str(), trace.tint.as_slice()));
         report.warnings.extend(tinted(tints, self.light));
