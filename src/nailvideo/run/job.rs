@@ -163,12 +163,26 @@ pub fn run(
         if let Some(outline) = &inputs.outline {
             return Err(NailVideoError::Nail { path: outline.clone(), why: why_not });
         }
-        let is_new = ![PICTURE, OUTLINE].iter().any(|name| outputs.folder.join(name).exists());
-        let remedy = match suggested.filter(|_| outputs.report && is_new) {
+        let [picture, outline] = [PICTURE, OUTLINE].map(|name| outputs.folder.join(name));
+        let there: Vec<String> = [&picture, &outline]
+            .into_iter()
+            .filter(|path| path.exists())
+            .map(|path| path.display().to_string())
+            .collect();
+        let [picture, outline] = [picture, outline].map(|path| path.display().to_string());
+        let remedy = match suggested.filter(|_| outputs.report) {
+            // A person may have corrected it.
+            Some(suggestion) if !there.is_empty() => format!(
+                "what was seen on frame {} isn't saved, for there is {} already, from an earlier run, perhaps \
+                 of another video: where it shows this one, correct it in LabelMe or with `lunula edit {}` until one \
+                 polygon is labelled `nail`, and give {outline} as --outline; else remove it or give another --out",
+                suggestion.index,
+                there.join(" and "),
+                outputs.folder.display()
+            ),
             Some(suggestion) => {
                 job.suggest(&suggestion)?;
                 staging.commit()?;
-                let [picture, outline] = [PICTURE, OUTLINE].map(|name| outputs.folder.join(name).display().to_string());
                 format!(
                     "frame {} is saved as {picture}, and what was seen on it as {outline}: correct that in LabelMe or \
                      with `lunula edit {}` until one polygon is labelled `nail`, and give it as --outline",
