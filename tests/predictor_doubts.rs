@@ -163,7 +163,9 @@ fn a_column_that_hangs_is_warned_of() {
     };
     beside(0..0).never_says("was it recorded?");
     beside(12..13).says("b.csv: Fz_N (0) is the same in all ").says("Leave cells empty that were not");
-    beside(10..13).says("b.csv: Fx_N (0), Fy_N (0), Fz_N (0) is the same in all ");
+    beside(11..13).says("b.csv: Fy_N (0), Fz_N (0) is the same in all ");
+    // Nothing was touched.
+    beside(10..13).never_says("was it recorded?");
 }
 
 /// A transducer that was mounted turned, another person's log, one that lost the LED's column; and a trade-off that is

@@ -4,6 +4,7 @@ use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use super::work::{Made, Quality};
@@ -45,6 +46,9 @@ pub struct Report<F> {
 struct Earlier {
     #[serde(default)]
     job: String,
+    /// Of a run of a pipeline, which has no job's name.
+    #[serde(default)]
+    tasks: Option<IgnoredAny>,
     #[serde(default)]
     pictures: Vec<PathBuf>,
 }
@@ -116,22 +120,30 @@ impl<F: Serialize> Report<F> {
     /// Warns of another job's report in `at`, which this one's replaces, and of pictures that the run drew which was
     /// reported there, and this one doesn't.
     pub fn warn_of_earlier(&mut self, at: &Path) {
-        let before = std::fs::read(at).ok().and_then(|json| serde_json::from_slice::<Earlier>(&json).ok());
-        let Some(before) = before else { return };
-        if !before.job.is_empty() && before.job != self.job {
-            self.warnings.push(format!(
-                "{}: the report of `lunula {}` stood here, and is replaced by that of `lunula {}`; give each job a \
-                 folder, or name, of its own",
-                at.display(),
-                before.job,
-                self.job
-            ));
-        }
-        let left = before.pictures.into_iter();
+        let left = self.warn_of_another(at).map_or_else(Vec::new, |before| before.pictures).into_iter();
         // By name: a folder may be called otherwise than before.
         let is_drawn = |path: &PathBuf| self.pictures.iter().any(|own| own.file_name() == path.file_name());
         let left: Vec<PathBuf> = left.filter(|path| !is_drawn(path) && path.is_file()).collect();
         self.warn_of_left(&left);
+    }
+
+    /// Warns of another job's report in `at`, which this one's replaces.
+    pub fn warn_of_replaced(&mut self, at: &Path) {
+        self.warn_of_another(at);
+    }
+
+    fn warn_of_another(&mut self, at: &Path) -> Option<Earlier> {
+        let before: Earlier = serde_json::from_slice(&std::fs::read(at).ok()?).ok()?;
+        let job = if before.tasks.is_some() { "run" } else { &before.job };
+        if !job.is_empty() && job != self.job {
+            self.warnings.push(format!(
+                "{}: the report of `lunula {job}` stood here, and is replaced by that of `lunula {}`; give each job a \
+                 folder, or name, of its own",
+                at.display(),
+                self.job
+            ));
+        }
+        Some(before)
     }
 
     /// Warns of results of an earlier run, which nobody should take for this one's.

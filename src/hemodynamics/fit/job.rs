@@ -107,7 +107,7 @@ pub(super) fn steps(
             }
             .to_owned(),
         ),
-        match alone::parts(inputs).len() {
+        match alone::count(inputs) {
             0 => Step::new(ALONE, false, "one recording".to_owned()),
             parts => Step::new(ALONE, true, format!("{parts} fits, to see whether one value for all holds")),
         },
@@ -214,7 +214,7 @@ pub fn fit(
         table,
     };
     let left_out = left_out(steps(inputs, options, outputs, ambient(inputs, options), Some(ready.samples())));
-    let warnings = warnings(&result, &ready.recordings, alone::warnings(&figures.alone, inputs, options));
+    let warnings = warnings(&result, &ready.recordings, alone::warnings(&figures.alone, options));
     let notes = notes(&result, inputs, &ready.recordings, outputs.figures);
     let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };
     if outputs.report {

@@ -76,7 +76,7 @@ pub struct FitFigures {
     pub converged: bool,
     /// The free groups.
     pub free: Vec<Group>,
-    /// What each person's recordings give by themselves, or each recording where all are one person's; none of one.
+    /// What each person's recordings give by themselves, and each of several recordings of a person; none of one.
     pub alone: Vec<Alone>,
     /// Offsets and scalings.
     pub photodiodes: Vec<FittedPhotodiode>,

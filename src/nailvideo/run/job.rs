@@ -203,6 +203,7 @@ pub fn run(
     let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
     report.decoding_share = decoding / report.wall_s;
     if outputs.report {
+        report.warn_of_replaced(&outputs.folder.join("run.json"));
         staging.write("run.json", report.text().as_bytes())?;
     }
     staging.commit()?;

@@ -503,6 +503,7 @@ impl PhotosReport {
         staging: &Staging,
     ) -> Result<(), WriteError> {
         self.warn_of_left(&staging.left_from_earlier(&[]));
+        self.warn_of_replaced(&staging.target().join(JSON));
         staging.write(HTML, self.html(nails, sheets, nail_sheets).as_bytes())?;
         staging.write(JSON, self.text().as_bytes())
     }

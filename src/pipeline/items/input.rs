@@ -81,7 +81,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         // A picture may lie beside its film, a mask beside its photograph.
         let is_mask = |path: &str| path.to_lowercase().split(['/', '_', '-', '.']).any(|part| MASKS.contains(&part));
         let is_new = |other: &Match| {
-            let is_taken = found.matches.iter().any(|found| found.keys == other.keys);
+            let is_taken = found.matches.iter().any(|found| goes_with(&other.path, &found.path));
             !is_taken && !is_mask(&other.path) && !in_other_case.contains(&other.path)
         };
         let others = [&PICTURES, &FILMS].into_iter().filter_map(|endings| pattern.with_endings(endings));
@@ -126,6 +126,12 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
 
 fn nothing_matches(said: &str, why: &str) -> String {
     format!("nothing matches `{said}`: {why}")
+}
+
+/// Whether a picture is of the same as one that is taken: `s01.jpg`, `s01_thumb.jpg`, `s01 (1).jpg` beside `s01.png`.
+fn goes_with(path: &str, taken: &str) -> bool {
+    let (taken, _) = taken.rsplit_once('.').unwrap_or((taken, ""));
+    path.strip_prefix(taken).is_some_and(|rest| rest.starts_with(['.', '_', '-', ' ', '(']))
 }
 
 /// Refuses files that a pattern finds in the folder of results, unless a run made them: they would be left out.

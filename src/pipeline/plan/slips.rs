@@ -110,7 +110,7 @@ fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Vec<
     let other_format = (!left.is_empty()).then(|| {
         format!(
             "`{pattern}` leaves out {} file(s) of another format, of which it takes none: {}; write them as the others \
-             are, or the pattern without an ending",
+             are, or name them in an input of their own",
             left.len(),
             listed(&left)
         )

@@ -461,7 +461,8 @@ fn files_that_only_the_case_of_letters_leaves_out_are_warned_of() {
     let others = format!("[inputs.more]\nfiles = \"l/{{n}}.C*\"\n{}", one.replace("\"logs\"", "[\"logs\", \"more\"]"));
     assert_eq!(bench.plan(&others).warnings, [""; 0], "another input has them");
     // A photograph that came later, of another format; a preview and a mask are none.
-    let pictures = ["p/a.png", "p/b.png", "p/c.JPG", "p/b.jpg", "p/a_mask.jpg", "p/c.txt"].map(|path| (path, "1"));
+    let pictures = ["p/a.png", "p/b.png", "p/c.JPG", "p/b.jpg", "p/a_mask.jpg", "p/a_thumb.jpg", "p/c.txt"];
+    let pictures = pictures.map(|path| (path, path));
     let maps = "[inputs.nails]\nfiles = \"p/{subject}.png\"\n[stage.maps]\njob = \"normalize\"\nphoto = \"nails\"\n";
     let said = Bench::new(&pictures).plan(maps).warnings;
     let what = "`p/{subject}.png` leaves out 1 file(s) of another format, of which it takes none: p/c.JPG;";

@@ -79,17 +79,24 @@ fn all_at_once(data: &Dataset, one: &Recording) -> Option<String> {
     })
 }
 
-/// What to say of targets that have a single value in a recording, while the photodiodes say, by the other recordings,
-/// that they moved.
+/// What to say of targets that have a single value in a recording in which another one moves, while the photodiodes
+/// say, by the recordings in which they move, that they did. Where none moves, nothing was touched, or only pressed.
 fn never_moves(data: &Dataset, one: &Recording) -> Option<String> {
     let y = data.y();
-    let is_one = |target: &usize| one.rows.clone().all(|row| y[[row, *target]] == y[[one.rows.start, *target]]);
-    let still = (0..data.targets().len()).filter(is_one);
-    let rest = [0..one.rows.start, one.rows.end..data.rows()];
-    let still = still.filter(|target| moved(data, data.inputs().len() + target, &one.rows, &rest));
+    let first = |rows: &Range<usize>, target: usize| y[[rows.start, target]];
+    let is_one =
+        |one: &Recording, target: usize| one.rows.clone().all(|row| y[[row, target]] == first(&one.rows, target));
+    let all = 0..data.targets().len();
+    if !lasts(data, &one.rows) || all.clone().all(|target| is_one(one, target)) {
+        return None;
+    }
+    let is_still = |target: &usize| {
+        let rest = data.recordings().iter().filter(|other| !is_one(other, *target)).map(|other| other.rows.clone());
+        is_one(one, *target) && moved(data, data.inputs().len() + target, &one.rows, &rest.collect::<Vec<_>>())
+    };
     let still: Vec<String> =
-        still.map(|target| format!("{} ({})", data.targets()[target], y[[one.rows.start, target]])).collect();
-    (lasts(data, &one.rows) && !still.is_empty()).then(|| {
+        all.filter(is_still).map(|k| format!("{} ({})", data.targets()[k], first(&one.rows, k))).collect();
+    (!still.is_empty()).then(|| {
         format!(
             "{}: {} is the same in all {} rows, while the {} say, as in the other recordings, that it moved: was it \
              recorded? Leave cells empty that were not",
@@ -142,7 +149,7 @@ fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>
 }
 
 /// Whether the other photodiodes know a column by the rows of `rest`, and say that it moved in a run of rows.
-fn moved(data: &Dataset, k: usize, run: &Range<usize>, rest: &[Range<usize>; 2]) -> bool {
+fn moved(data: &Dataset, k: usize, run: &Range<usize>, rest: &[Range<usize>]) -> bool {
     let others: Vec<usize> = (0..data.inputs().len()).filter(|&input| input != k).collect();
     if others.is_empty() || rest.iter().map(Range::len).sum::<usize>() < ROWS * (1 + others.len()) {
         return false;
@@ -150,8 +157,8 @@ fn moved(data: &Dataset, k: usize, run: &Range<usize>, rest: &[Range<usize>; 2])
     let x = data.x().select(Axis(1), &others);
     let values = column(data, k).insert_axis(Axis(1));
     let parts = |of: ArrayView2<'_, f64>| {
-        let [before, after] = rest.clone().map(|rows| of.slice_axis(Axis(0), Slice::from(rows)).to_owned());
-        concatenate(Axis(0), &[before.view(), after.view()]).expect("parts of one array")
+        let parts: Vec<_> = rest.iter().map(|rows| of.slice_axis(Axis(0), Slice::from(rows.clone()))).collect();
+        concatenate(Axis(0), &parts).expect("parts of one array")
     };
     let (design, known) = (parts(x.view()), parts(values));
     let options = LeastSquaresOptions { deficient: Deficient::MinimumNorm, ..LeastSquaresOptions::default() };

@@ -10,6 +10,7 @@ use super::{DataError, Wanted};
 use crate::flexion;
 use crate::log::{Channel, GROUPS, LitRows, Statuses, Unknown, Verdict, doubts, lacks_label, time_not_read};
 use crate::table::{Cell, Table, TableError};
+use crate::words::decimal_comma;
 
 /// The rows of a file, all of them.
 #[derive(Debug)]
@@ -283,7 +284,8 @@ fn bad_cell(table: &Table, row: usize, name: &str) -> Result<TableError, TableEr
         Ok(())
     })?;
     let what = format!(
-        "`{shown}` is no finite number; correct it, leave it empty, or leave out such rows with --drop-invalid"
+        "`{shown}` is no finite number{}; correct it, leave it empty, or leave out such rows with --drop-invalid",
+        decimal_comma(&shown)
     );
     Ok(table.cell(row, name, what))
 }
