@@ -52,7 +52,8 @@ pub fn run(
     watch.go_on()?;
     let labels = stages.time("label", || label(&posture, &samples, &tie, options.max_gap_s));
     if labels.angles_deg.iter().flatten().all(|angle| angle.is_nan()) {
-        let why = nothing_labelled(&posture, &samples, &tie);
+        // What is doubted of the log's times may be why.
+        let why = [&[nothing_labelled(&posture, &samples, &tie)][..], &samples.warnings].concat().join("; ");
         return Err(AlignError::NothingLabelled { path: inputs.log.clone(), why });
     }
     let agreement = match tie.method {

@@ -73,7 +73,8 @@ struct At {
 enum State {
     /// The last frame, and the one before where that is known.
     Followed(At, Option<At>),
-    Lost,
+    /// For so many frames.
+    Lost(usize),
     /// Found again, and confirmed so many times.
     Trial(At, usize),
 }
@@ -152,14 +153,17 @@ impl Follower {
                     Err(lost) => self.lose(frame, lost),
                 }
             }
-            State::Lost => self.again(frame).map_or_else(Err, |()| Err(Lost::Trial)),
+            State::Lost(frames) => {
+                self.state = State::Lost(frames + 1);
+                self.again(frame, frames).map_or_else(Err, |()| Err(Lost::Trial))
+            }
         }
     }
 
     /// It is lost, and looked for at once.
     fn lose(&mut self, frame: &Frame<'_>, lost: Lost) -> Result<Place, Lost> {
-        self.state = State::Lost;
-        let _on_trial = self.again(frame);
+        self.state = State::Lost(1);
+        let _on_trial = self.again(frame, 0);
         Err(lost)
     }
 
@@ -219,11 +223,13 @@ impl Follower {
         })
     }
 
-    /// Looks for a lost nail everywhere; what is found is on trial.
-    fn again(&mut self, frame: &Frame<'_>) -> Result<(), Lost> {
+    /// Looks for a nail that is lost for so many frames where it was last, and, in one of some, everywhere; what is found
+    /// is on trial.
+    fn again(&mut self, frame: &Frame<'_>, frames: usize) -> Result<(), Lost> {
         let samples = samples(frame.luma, self.quarters);
         let mut why = Lost::Unlike;
-        let places = self.search.places(&samples, &self.last);
+        let everywhere = frames.is_multiple_of(self.search.every(&samples));
+        let places = if everywhere { self.search.places(&samples, &self.last) } else { Vec::new() };
         for start in std::iter::once(self.last).chain(places) {
             let Some(start) = self.coarse(frame, start) else { continue };
             match self.fine(frame, start, After::Loss, None) {

@@ -46,17 +46,16 @@ pub enum Drawn {
 pub enum AnnotationFault {
     #[error(transparent)]
     File(#[from] crate::labelme::Error),
-    #[error(
-        "{file}: was drawn on a picture of {drawn:?} px, but the photograph has {photo:?} px; draw it again, or scale \
-         it"
-    )]
+    #[error("{file}: was drawn on a picture of {drawn:?} px, but the photograph has {photo:?} px; {remedy}")]
     OtherSize {
         /// Annotation or mask.
         file: String,
         /// Width and height it states.
         drawn: [u32; 2],
-        /// Width and height of the upright photograph.
+        /// Width and height of the photograph, upright or as it is stored.
         photo: [u32; 2],
+        /// What to do.
+        remedy: &'static str,
     },
     #[error(
         "{0}: the photograph's EXIF orientation turns it without changing its size, so it is not known whether this \
@@ -155,7 +154,7 @@ impl Drawn {
         let turned = photo.orientation != image::metadata::Orientation::NoTransforms;
         let fits = |expected: [u32; 2]| size.is_none_or(|s| s == expected);
         let (fits_upright, fits_stored) = (fits(upright), fits(stored));
-        let stored = match self {
+        let is_stored = match self {
             Self::Upright => fits_upright.then_some(false),
             Self::Stored => fits_stored.then_some(true),
             Self::Auto if fits_upright && fits_stored && turned => {
@@ -163,10 +162,15 @@ impl Drawn {
             }
             Self::Auto => (fits_upright || fits_stored).then_some(!fits_upright),
         };
-        stored.ok_or_else(|| AnnotationFault::OtherSize {
+        is_stored.ok_or_else(|| AnnotationFault::OtherSize {
             file: file.to_owned(),
             drawn: size.unwrap_or_default(),
-            photo: upright,
+            photo: if self == Self::Stored { stored } else { upright },
+            remedy: match self {
+                Self::Stored if fits_upright => "it fits the upright picture: leave out --annotations stored",
+                Self::Upright if fits_stored => "it fits the stored picture: say --annotations stored",
+                _ => "draw it again, or scale it",
+            },
         })
     }
 }
