@@ -223,8 +223,8 @@ impl Follower {
         })
     }
 
-    /// Looks for a nail that is lost for so many frames where it was last, and, in one of some, everywhere; what is found
-    /// is on trial.
+    /// Looks for a nail that is lost for so many frames where it was last, and, in one of some, everywhere; what is
+    /// found is on trial.
     fn again(&mut self, frame: &Frame<'_>, frames: usize) -> Result<(), Lost> {
         let samples = samples(frame.luma, self.quarters);
         let mut why = Lost::Unlike;

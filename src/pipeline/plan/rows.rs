@@ -126,7 +126,7 @@ fn is_left_by_choice(spec: &Spec, stage: &StageSpec, keys: &Keys) -> bool {
             From::Stage(before, _) => {
                 let before = &spec.stages[before];
                 // Results of what is gathered are of all that have these keys.
-                let own = gathered_by(before).map(|names| keys.only(names.into_iter()));
+                let own = gathered_by(before).map(|names| keys.only(names));
                 is_left_by_choice(spec, before, own.as_ref().unwrap_or(keys))
             }
         };

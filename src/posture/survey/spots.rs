@@ -23,8 +23,8 @@ const DISC_ELONGATION: f64 = 1.1;
 const RAGGED_MISFIT: f64 = 0.04;
 const SMALL_RADIUS_PX: f64 = 6.0;
 /// The centres of a disc and of its outline are no further apart than so many of their standard errors (measured: discs
-/// of phantoms, clean and hard, at most 1.6; round yellow paint, shaded and in strokes, up to 12. What a coarse codec makes of
-/// discs of 5 px at crf 34 is as much as 3.6).
+/// of phantoms, clean and hard, at most 1.6; round yellow paint, shaded and in strokes, up to 12. What a coarse codec
+/// makes of discs of 5 px at crf 34 is as much as 3.6: small ones are not asked).
 const APART_ERRORS: f64 = 2.0;
 /// What moves less than this share of its radius from frame to frame is not blurred to another shape.
 const STILL_RADII: f64 = 0.5;
@@ -307,8 +307,8 @@ struct Apart {
 }
 
 impl Apart {
-    /// Wherever chroma lies, the nearest; none where either has no centre. Shading, strokes and grain within paint, of which
-    /// no disc's model knows, pull the one and not the other.
+    /// Wherever chroma lies, the nearest; none where either has no centre. Shading, strokes and grain within paint, of
+    /// which no disc's model knows, pull the one and not the other.
     fn of(frame: &Frame<'_>, looks: [&Look; 2], at_px: [f64; 2], scratch: &mut Scratch) -> Option<Self> {
         let apart = |siting: Siting| {
             let [disc, outline] = looks.map(|look| centre(frame, siting, look, at_px, scratch).ok());

@@ -40,8 +40,8 @@ fn in_order<T: Ord>(names: &[String], place: fn(&str) -> Option<T>) -> Vec<Strin
 const FILLED: f64 = 0.5;
 
 /// What to say of a table whose cells are of another grid than those of a model: cells of one name are other places
-/// then. A model reads the cells on the nail, whose box lies in the grid's middle; of cells that were chosen from these,
-/// which fill no box that spans the grid, the grid isn't known.
+/// then. A model reads the cells on the nail, whose box lies in the grid's middle; of cells that were chosen, which
+/// fill no box that spans the grid, the grid isn't known.
 pub(super) fn other_grid(inputs: &[String], names: &[String]) -> Option<String> {
     let of_model: Vec<[usize; 2]> = inputs.iter().filter_map(|name| cell(name)).collect();
     let side = |cells: &[[usize; 2]], axis: usize, edge: bool| {
