@@ -350,8 +350,7 @@ mod tests {
 
     /// How far a disc's centre and its outline's are apart, of a mark of paint that gets darker downward by so many
     /// levels a pixel; and how far off each is.
-    fn looked_at(shade: f64) -> (Apart, [f64; 2]) {
-        let at = [60.2, 49.7];
+    fn looked_at(at: [f64; 2], shade: f64) -> (Apart, [f64; 2]) {
         let mut stage = Stage::new(120, 100, SKIN);
         stage.disc(at, 10.0, YELLOW);
         let mut picture = stage.picture(3);
@@ -374,11 +373,13 @@ mod tests {
 
     #[test]
     fn round_paint_that_is_shaded_is_no_disc() {
-        let (apart, [disc, outline]) = looked_at(0.0);
-        assert!(apart.errors <= APART_ERRORS && apart.px2 < 0.01, "{apart:?}");
-        assert!(disc < 0.1 && outline < 0.1, "{disc} {outline}");
-        let (apart, [disc, outline]) = looked_at(4.0);
-        assert!(apart.errors > APART_ERRORS && apart.px2 > 0.01, "{apart:?}");
-        assert!(disc > 0.2 && outline < 0.15, "{disc} {outline}");
+        for at in [[60.2, 49.7], [60.5, 49.5], [60.0, 50.0], [59.8, 50.3]] {
+            let (apart, [disc, outline]) = looked_at(at, 0.0);
+            assert!(apart.errors < 1.0 && apart.px2 == 0.0, "{apart:?}");
+            assert!(disc < 0.1 && outline < 0.1, "{disc} {outline}");
+            let (apart, [disc, outline]) = looked_at(at, 2.5);
+            assert!(apart.errors > APART_ERRORS && apart.px2 > 0.01, "{apart:?}");
+            assert!(disc > 0.2 && outline < 0.15, "{disc} {outline}");
+        }
     }
 }
