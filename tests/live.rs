@@ -231,6 +231,10 @@ fn spoilt_rows_cost_themselves_and_are_counted() {
     assert_eq!(spoilt, 3);
     assert_eq!(dir.text("r.csv"), "time_s,P1\n0,1\n0.03,1.5\n0.04,2\n");
     assert_eq!(dir.text("r.predicted.csv"), live.stdout);
+    dir.write("dated.csv", "time_s,P1\n2026-03-21T02:00:59,1\n2026-03-21T02:01:00,2\n");
+    let dated = dir.lunula(&["record", "--source", "dated.csv", "--out", "d.csv"]).expect(2);
+    dated.says("line 2 has a cell that is no finite number").says("a stream's time is a number");
+    live.never_says("a stream's time is a number");
 }
 
 #[test]

@@ -154,5 +154,12 @@ pub(super) fn is_away(condition: Condition) -> bool {
 pub(super) fn spoilt_words(rows: &SpoiltRows) -> String {
     let SpoiltRows { kind, count, line, text } = rows;
     let others = if *count > 1 { format!(", and {} more", count - 1) } else { String::new() };
-    format!("line {line} {} (`{text}`){others}", kind.words())
+    let is_date = |at: &[u8]| at[0].is_ascii_digit() && b":/-".contains(&at[1]) && at[2].is_ascii_digit();
+    let dated = match kind {
+        Spoil::Unreadable if text.as_bytes().windows(3).any(is_date) => {
+            "; dates and times of day are read of files, by `predict`, `align` and others: a stream's time is a number"
+        }
+        _ => "",
+    };
+    format!("line {line} {} (`{text}`){others}{dated}", kind.words())
 }
