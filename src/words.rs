@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
+use lunula_live::wire::with_decimal_comma;
 use unicode_normalization::UnicodeNormalization;
 
 /// A choice of few, each with a word.
@@ -44,8 +45,11 @@ pub fn fixed(value: f64, places: usize) -> String {
 /// What to add to the refusal of a number that has a decimal comma: one that stands in quotes, between commas.
 #[must_use]
 pub(crate) fn decimal_comma(text: &str) -> &'static str {
-    let is_number = text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok();
-    if is_number { " (where commas part the cells, a decimal has a point)" } else { "" }
+    if with_decimal_comma(text.as_bytes()).is_some() {
+        " (where commas part the cells, a decimal has a point)"
+    } else {
+        ""
+    }
 }
 
 /// The known name from which `name` differs by a slip of the finger: a letter, or one in three.

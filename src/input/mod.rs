@@ -124,7 +124,8 @@ struct Missing(PathBuf);
 const MOST_NAMES: usize = 10_000;
 
 /// Where a path ends that leads nowhere, and what there is of nearly that name.
-fn missing(path: &Path) -> String {
+#[must_use]
+pub fn missing(path: &Path) -> String {
     // The first part that is not there, and the folder that lacks it.
     let parent = |path: &Path| match path.parent() {
         Some(at) if at.as_os_str().is_empty() => Some(PathBuf::from(".")),

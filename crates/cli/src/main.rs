@@ -129,7 +129,7 @@ fn main() -> ExitCode {
         Ok((cli, absent)) if absent.is_empty() => cli,
         Ok((_, absent)) => {
             let all: Vec<String> =
-                absent.iter().map(|path| format!("{}: is not there; check its name", path.display())).collect();
+                absent.iter().map(|path| format!("{}: {}", path.display(), input::missing(path))).collect();
             return ended_with(Err(anyhow::anyhow!(all.join("\n"))));
         }
         // Help and version.

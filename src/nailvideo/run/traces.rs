@@ -124,9 +124,8 @@ pub(super) fn leaps(traces: &[Trace], sd: &[Option<f64>], index: impl Fn(usize) 
         let beside = [a?, b?, c?, d?].into_iter().fold(0.0, f64::max);
         own.filter(|own| *own > LEAP && *own > LEAPS * beside)
     };
-    let all: Vec<(usize, f64)> =
-        changes.windows(5).enumerate().filter_map(|(k, around)| Some((k + 3, leap(around)?))).collect();
-    let all: Vec<(usize, f64)> = all.into_iter().filter(|(frame, _)| is_certain(*frame)).collect();
+    let all = changes.windows(5).enumerate().filter_map(|(k, around)| Some((k + 3, leap(around)?)));
+    let all: Vec<(usize, f64)> = all.filter(|(frame, _)| is_certain(*frame)).collect();
     let (first, share) = *all.first()?;
     Some(format!(
         "the photodiodes leap by {:.0} % of all that they change, from one frame to the next, in {} place(s), the \

@@ -81,8 +81,9 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         // A picture may lie beside its film, a mask beside its photograph.
         let is_mask = |path: &str| path.to_lowercase().split(['/', '_', '-', '.']).any(|part| MASKS.contains(&part));
         let is_new = |other: &Match| {
-            let is_taken = found.matches.iter().any(|found| goes_with(&other.path, &found.path));
-            !is_taken && !is_mask(&other.path) && !in_other_case.contains(&other.path)
+            // Most are those that the pattern finds itself.
+            let is_other = !paths.contains(other.path.as_str()) && !in_other_case.contains(&other.path);
+            is_other && !is_mask(&other.path) && !found.matches.iter().any(|found| goes_with(&other.path, &found.path))
         };
         let others = [&PICTURES, &FILMS].into_iter().filter_map(|endings| pattern.with_endings(endings));
         let others = others.flat_map(|pattern| pattern.find(&disk).matches).filter(is_new);
