@@ -18,7 +18,7 @@ const SAMPLES: usize = 50;
 /// Rows of a sensor are nearer together, seconds (assumed), and so near where there are many: 1 and 2 kHz.
 const APART_S: f64 = 1.0;
 const MANY_APART_S: f64 = 0.5;
-/// Nor nearer together, where all of them are within so many seconds (assumed): minutes that are called seconds.
+/// Nor nearer together, where all of them are within so many seconds (assumed): minutes or days that are called seconds.
 const NEAR_S: [[f64; 2]; 2] = [[9e-4, 15.0], [2e-3, 3.0]];
 /// Where a finger hardly presses, newtons, in so many rows, it is not sheared by more than this (assumed).
 const TOUCHES_N: f64 = 0.05;
@@ -68,27 +68,28 @@ const PULLS: f64 = 0.25;
 
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
-    let apart = || {
-        let step_s = median_step_s(time_s)
-            .filter(|step_s| *step_s > APART_S || *step_s >= MANY_APART_S && time_s.len() >= SAMPLES)?;
-        Some(format!(
+    let span_s = || Some(time_s.last()? - time_s.first()?);
+    blocks(time_s).or_else(|| unit(median_step_s(time_s)?, span_s()?, time_s.len()))
+}
+
+/// What to say of the unit of times, of so many rows that are so far apart.
+pub(crate) fn unit(step_s: f64, span_s: f64, rows: usize) -> Option<String> {
+    if step_s > APART_S || step_s >= MANY_APART_S && rows >= SAMPLES {
+        return Some(format!(
             "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what \
              they are in",
             short(step_s)
-        ))
-    };
-    let near = || {
-        let span_s = time_s.last()? - time_s.first()?;
-        let step_s = median_step_s(time_s).filter(|step_s| *step_s > 0.0 && time_s.len() >= SAMPLES)?;
-        NEAR_S.iter().any(|[step, span]| step_s < *step && span_s < *span).then(|| {
-            format!(
-                "rows are {:.2} ms apart, and all of them within {span_s:.1} s, if the stamps are in seconds: are they \
-                 minutes? Write them in seconds",
-                1e3 * step_s
-            )
-        })
-    };
-    blocks(time_s).or_else(apart).or_else(near)
+        ));
+    }
+    let near = |[step, span]: &[f64; 2]| step_s < *step && span_s < *span;
+    (step_s > 0.0 && rows >= SAMPLES && NEAR_S.iter().any(near)).then(|| {
+        format!(
+            "rows are {} s apart, and all of them within {} s, if the stamps are in seconds: are they minutes, or days \
+             as a spreadsheet counts them? Write them in seconds",
+            short(step_s),
+            short(span_s)
+        )
+    })
 }
 
 /// The usual step of values that grow evenly from row to row.
@@ -380,7 +381,9 @@ mod tests {
     fn minutes_that_are_called_seconds_are_doubted_and_quick_sensors_are_not() {
         let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
         let minutes = every(0.04 / 60.0, 1500).expect("a minute at 25 Hz");
-        assert!(minutes.contains("rows are 0.67 ms apart, and all of them within 1.0 s"), "{minutes}");
+        assert!(minutes.contains("rows are 0.000667 s apart, and all of them within 0.999 s"), "{minutes}");
+        let days = every(0.04 / 86_400.0, 300).expect("12 s at 25 Hz");
+        assert!(days.contains("rows are 0.000000463 s apart") && days.contains("days as a spreadsheet counts"), "{days}");
         assert!(every(0.08 / 60.0, 750).is_some());
         assert_eq!([every(1e-3, 60_000), every(1e-3, 5000), every(0.01, 100), every(1e-4, 20)], [(); 4].map(|()| None));
     }

@@ -46,14 +46,15 @@ pub fn run(
     watch.go_on()?;
     let samples = stages.time("ambient light", || samples(&log, &options.log.ambient))?;
     watch.go_on()?;
+    // What is doubted of the log's times may be why.
+    let doubted = |why: String| [&[why][..], &samples.warnings].concat().join("; ");
     let tie = stages
         .time("tie", || tie(&posture, &log, &samples, options))
-        .map_err(|why| AlignError::NotTied { path: inputs.joints.clone(), why })?;
+        .map_err(|why| AlignError::NotTied { path: inputs.joints.clone(), why: doubted(why) })?;
     watch.go_on()?;
     let labels = stages.time("label", || label(&posture, &samples, &tie, options.max_gap_s));
     if labels.angles_deg.iter().flatten().all(|angle| angle.is_nan()) {
-        // What is doubted of the log's times may be why.
-        let why = [&[nothing_labelled(&posture, &samples, &tie)][..], &samples.warnings].concat().join("; ");
+        let why = doubted(nothing_labelled(&posture, &samples, &tie));
         return Err(AlignError::NothingLabelled { path: inputs.log.clone(), why });
     }
     let agreement = match tie.method {

@@ -283,7 +283,7 @@ fn unit(stream: &StreamCertificate) -> Option<String> {
     }
     let arrives = stream.clock.as_ref().is_some_and(|clock| clock.drift_ppm.abs() < SAME_UNIT_PPM);
     let step_s = stream.rate_hz.filter(|_| !arrives && counts.rows >= STEPS)?.recip();
-    doubts::time(&[0.0, step_s])
+    doubts::unit(step_s, step_s * counts.rows as f64, counts.rows as usize)
 }
 
 /// That a watchdog lets go between answers, which are usually so far apart.
@@ -403,11 +403,14 @@ mod tests {
         assert!(doubted.starts_with("rows are 10 s apart") && doubted.contains("--time-unit"), "{doubted}");
         // A device whose clock runs a thousand times as fast as the host's.
         assert_eq!(unit(&stream(rows(600, 0), 10.0, Some(-999_000.0))), Some(doubted));
+        let days = unit(&stream(rows(600, 0), 0.04 / 86_400.0, None)).unwrap();
+        assert!(days.contains("days as a spreadsheet counts them"), "{days}");
         let set_back = RowCounts { rows: 600, set_back: 599, ..RowCounts::default() };
         let arrival = unit(&stream(set_back, 20.0, None)).unwrap();
         assert!(arrival.starts_with("the times of most rows do not fit"), "{arrival}");
         for fine in [
             stream(rows(600, 0), 0.01, None),
+            stream(rows(60_000, 0), 5e-4, None),
             stream(rows(9, 0), 10.0, None),
             stream(rows(600, 3), 10.0, Some(40.0)),
             StreamCertificate { times: Some(StreamTimes::Arrival), ..stream(rows(600, 0), 10.0, None) },
