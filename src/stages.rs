@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Time spent by stage, summed over threads. Stages are listed in the order in which they first ran.
-#[derive(Debug, Default)]
+/// Time spent by stage, summed over threads, and since this was made. Stages are listed in the order in which they
+/// first ran.
+#[derive(Debug)]
 pub struct Stages {
+    begun: Instant,
     spent: Mutex<BTreeMap<&'static str, (usize, Duration, u64)>>,
 }
 
@@ -22,7 +24,18 @@ pub struct Stage {
     pub runs: u64,
 }
 
+impl Default for Stages {
+    fn default() -> Self {
+        Self { begun: Instant::now(), spent: Mutex::default() }
+    }
+}
+
 impl Stages {
+    /// Seconds since the first of them could begin.
+    pub fn wall_s(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64()
+    }
+
     /// Runs `work` as part of `stage`.
     pub fn time<T>(&self, stage: &'static str, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();

@@ -2,7 +2,6 @@
 
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
@@ -102,9 +101,9 @@ impl<F: Serialize> Report<F> {
 
     /// Adds the times.
     #[must_use]
-    pub fn timed(mut self, stages: &Stages, start: Instant) -> Self {
+    pub fn timed(mut self, stages: &Stages) -> Self {
         self.stages = stages.list();
-        self.wall_s = start.elapsed().as_secs_f64();
+        self.wall_s = stages.wall_s();
         self
     }
 

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
@@ -87,10 +86,10 @@ impl Work<'_> {
         stage: &'static str,
         figures: impl FnOnce() -> anyhow::Result<F> + Send,
     ) -> anyhow::Result<Report<F>> {
-        let (start, stages) = (Instant::now(), Stages::default());
+        let stages = Stages::default();
         self.run(said, |watch| -> anyhow::Result<_> {
             let figures = stages.time(stage, figures)?;
-            Ok(Report::new(J::KIND.name, watch, figures).timed(&stages, start))
+            Ok(Report::new(J::KIND.name, watch, figures).timed(&stages))
         })
     }
 }

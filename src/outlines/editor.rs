@@ -2,7 +2,6 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use super::annotation::{Annotation, Saved, Says, Shapes};
 use super::key::{Key, Press};
@@ -41,7 +40,6 @@ pub struct Editor {
     state: Mutex<State>,
     show: Box<Show>,
     stages: Stages,
-    start: Instant,
 }
 
 impl Editor {
@@ -61,8 +59,8 @@ impl Editor {
         };
         let pictures = Arc::new(Pictures::new(options.max_megapixels, options.normalization.white));
         let options = options.clone();
-        let (state, stages, start) = (Mutex::new(state), Stages::default(), Instant::now());
-        let editor = Self { set, options, pictures, parts: Arc::default(), state, show, stages, start };
+        let (state, stages) = (Mutex::new(state), Stages::default());
+        let editor = Self { set, options, pictures, parts: Arc::default(), state, show, stages };
         editor.tell(&mut editor.lock());
         Ok(editor)
     }
@@ -391,6 +389,6 @@ impl Editor {
             format!("{file}: nail {} was changed and not accepted since, so that the change is lost", item.number)
         });
         report.warnings.extend(unsaved);
-        report.timed(&self.stages, self.start)
+        report.timed(&self.stages)
     }
 }

@@ -1,7 +1,5 @@
 //! A folder for what evaluate, analyse and prune write: tables, pictures and the report `run.json`.
 
-use std::time::Instant;
-
 use serde::Serialize;
 
 use super::error::PredictorError;
@@ -15,11 +13,10 @@ pub fn end<F: Serialize>(
     out: Option<&Outputs>,
     write: impl FnOnce(&mut Report<F>, &Outputs) -> Result<Staging, PredictorError>,
     stages: &Stages,
-    start: Instant,
 ) -> Result<Report<F>, PredictorError> {
-    let Some(out) = out else { return Ok(report.timed(stages, start)) };
+    let Some(out) = out else { return Ok(report.timed(stages)) };
     let staging = write(&mut report, out)?;
-    let mut report = report.timed(stages, start);
+    let mut report = report.timed(stages);
     report.warn_of_earlier(&out.out.join("run.json"));
     if out.report {
         staging.write("run.json", report.text().as_bytes())?;

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use lunula_live::source::{Address, OfFinger, Pace as PlayPace, Place, Rows};
 
@@ -163,7 +162,7 @@ impl Prompter {
     /// # Errors
     /// A source that gives nothing, files that can't be written. What was recorded until then is kept.
     pub fn run(&self, view: Option<View>, tell: &dyn Fn(&str), watch: &Watch<'_>) -> Result<PromptReport, PromptError> {
-        let start = Instant::now();
+        let stages = Stages::default();
         let rows = self.subject_rows()?;
         let session =
             SessionFiles { out: Some(self.files.out.clone()), replace: self.files.replace, ..SessionFiles::default() };
@@ -205,7 +204,7 @@ impl Prompter {
         if is_recorded && !self.alone {
             places.write(&beside(&self.files.out, ".clock.toml"), CLOCK)?;
         }
-        let report = report.timed(&Stages::default(), start);
+        let report = report.timed(&stages);
         // A recording of before, which is as it was, has a report of its own.
         let at = is_recorded.then(|| beside(&self.files.out, ".run.json"));
         Ok(report.commit(places, at.as_deref())?)

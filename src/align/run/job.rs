@@ -1,7 +1,6 @@
 //! The alignment job: a table of joint angles and a log in, a labelled set with its certificate out; the one entry that
 //! command line, pipelines and trade-offs call.
 
-use std::time::Instant;
 
 use crate::align::certificate::Certificate;
 use crate::align::error::AlignError;
@@ -28,7 +27,6 @@ pub fn run(
     outputs: &AlignOutputs,
     watch: &Watch<'_>,
 ) -> Result<AlignReport, AlignError> {
-    let start = Instant::now();
     let stages = Stages::default();
     // A name that no table can have, or an input's, is refused before the work begins.
     TableFormat::of(&outputs.training)?;
@@ -90,7 +88,7 @@ pub fn run(
     if tie.method != TieMethod::Clock {
         report.unused(&["clock_zero"], "no clock in the picture ties the two");
     }
-    results.finish(report.timed(&stages, start), outputs)
+    results.finish(report.timed(&stages), outputs)
 }
 
 /// Ties the clocks as asked; the error is words for the user.

@@ -4,7 +4,6 @@
 //! The set's columns `subject` and `session` are the recording's keys of these names, unless the stage names others.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
 use serde::Serialize;
@@ -220,7 +219,7 @@ impl Job for JoinJob {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        let (start, stages) = (Instant::now(), Stages::default());
+        let stages = Stages::default();
         let sets: Vec<PathBuf> = work.of("sets").map(|at| at.path.clone()).collect();
         let to = work.folder.join(self.tables.named("training.csv", "training.parquet"));
         let is_of_format = |set: &PathBuf| TableFormat::of(set).is_ok_and(|format| format == self.tables.format());
@@ -233,7 +232,7 @@ impl Job for JoinJob {
                 }
                 _ => report.rows = Some(stages.time("join", || join(&sets, &to, &to))?),
             }
-            Ok(report.timed(&stages, start))
+            Ok(report.timed(&stages))
         })?;
         Ok(report.made(Vec::new()))
     }

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use crate::camera::draw::draw;
 use crate::camera::error::CameraError;
@@ -34,7 +33,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<CameraReport, CameraError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let mut files = files(&inputs.views)?;
     let copied = leave_copies_out(&mut files, inputs.plane.as_deref());
@@ -77,7 +75,7 @@ pub fn run(
     if videos == 0 {
         report.unused(&["every"], "the views are photographs");
     }
-    Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
+    Ok(report.timed(&stages).commit(places, report_at.as_deref())?)
 }
 
 /// Takes away files that are another's copy to the byte, or the plane's: a view counted twice is no second view.

@@ -1,7 +1,6 @@
 //! The equilibria of a range of loads: options in, a table with its report and picture out.
 
 use std::path::Path;
-use std::time::Instant;
 
 use lunula_hemodynamics::{Load, Parameters};
 
@@ -69,7 +68,6 @@ pub fn curve(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<CurveReport, HemodynamicsError> {
-    let start = Instant::now();
     let stages = Stages::default();
     TableFormat::of(&outputs.out)?;
     let report_at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
@@ -125,5 +123,5 @@ pub fn curve(
     if nothing_open {
         report.warnings.push("no load has an equilibrium with open vessels: nothing is drawn".to_owned());
     }
-    Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
+    Ok(report.timed(&stages).commit(places, report_at.as_deref())?)
 }

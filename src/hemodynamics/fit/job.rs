@@ -1,7 +1,6 @@
 //! The fit: options in, its result, parameter files, a table and a picture out.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use lunula_hemodynamics::{
     Calibration, Delay, FitOptions as Settings, FitResult, Free, Parameters, Recording, fit as search,
@@ -125,7 +124,6 @@ pub fn fit(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<FitReport, HemodynamicsError> {
-    let begin = Instant::now();
     let stages = Stages::default();
     let mut ready = stages.time("read", || ready(inputs, options))?;
     let mut places = places(inputs, options, outputs)?;
@@ -221,7 +219,7 @@ pub fn fit(
         places.write(&outputs.out, &result_text(&report))?;
     }
     let at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
-    Ok(report.timed(&stages, begin).commit(places, at.as_deref())?)
+    Ok(report.timed(&stages).commit(places, at.as_deref())?)
 }
 
 /// The crate counts recordings; people name them.

@@ -1,6 +1,5 @@
 //! The run: options in, a table with its report and picture out.
 
-use std::time::Instant;
 
 use lunula_hemodynamics::{Load, Parameters};
 
@@ -80,7 +79,6 @@ pub fn simulate(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<SimulateReport, HemodynamicsError> {
-    let begin = Instant::now();
     let stages = Stages::default();
     TableFormat::of(&outputs.out)?;
     let report_at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
@@ -145,7 +143,7 @@ pub fn simulate(
     let mut report = Report { left_out, failed, pictures, ..Report::new("simulate", watch, figures) };
     remarks(&mut report, inputs, options, &loads);
     report.warnings.extend(wide(&response));
-    Ok(report.timed(&stages, begin).commit(places, report_at.as_deref())?)
+    Ok(report.timed(&stages).commit(places, report_at.as_deref())?)
 }
 
 /// Fewer rows a period don't show what repeats.

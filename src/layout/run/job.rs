@@ -2,7 +2,6 @@
 //! pipelines call.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 use lunula_predictor::{Candidate, Criterion, LayoutProblem};
 use rayon::prelude::*;
@@ -38,7 +37,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<LayoutReport, LayoutError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let folder = &outputs.out;
     let mut places = Places::not_over(inputs.data.iter().map(|input| &input.path).chain(&inputs.positions));
@@ -153,7 +151,7 @@ pub fn run(
             report.unused(&["grid"], "the candidates are photodiodes");
         }
     }
-    Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
+    Ok(report.timed(&stages).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }
 
 /// What to say of chosen places that are nearer to each other than `--apart`: kept ones and their mirror images.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::time::Instant;
 
 use lunula_live::performance::Course;
 
@@ -48,7 +47,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<PerformanceReport, LiveError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let folder = &outputs.out;
     let mut places = Places::not_over([data]);
@@ -85,7 +83,7 @@ pub fn run(
         failed: trials.impossible,
         ..Report::new("performance", watch, figures)
     };
-    Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
+    Ok(report.timed(&stages).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }
 
 /// Which method the others are compared with.

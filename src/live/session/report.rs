@@ -1,7 +1,6 @@
 //! What a session reports, and how it ends.
 
 use std::path::PathBuf;
-use std::time::Instant;
 
 use lunula_live::latency::{Latency as Times, LatencySummary};
 use lunula_live::source::{StreamCertificate, StreamTimes};
@@ -98,7 +97,7 @@ pub struct Latency {
 /// A session that has ended.
 pub(super) struct Ended<'a> {
     pub(super) job: &'static str,
-    pub(super) start: Instant,
+    pub(super) stages: Stages,
     pub(super) files: &'a SessionFiles,
     pub(super) lanes: Vec<Lane<'a>>,
     pub(super) shared: Shared<'a>,
@@ -113,7 +112,7 @@ pub(super) struct Ended<'a> {
 /// # Errors
 /// Nothing came, or nobody could be given the rows.
 pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
-    let Ended { job, start, files, mut lanes, mut shared, warnings, left_out, wake_up, mut fault } = ended;
+    let Ended { job, stages, files, mut lanes, mut shared, warnings, left_out, wake_up, mut fault } = ended;
     for lane in &mut lanes {
         if let Err(why) = lane.work.lose(true, &mut shared) {
             fault.get_or_insert(why);
@@ -183,7 +182,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     let losses: Vec<String> = losses(&report).into_iter().chain(doubts).collect();
     losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     report.warnings.extend(losses);
-    let mut report = report.timed(&Stages::default(), start);
+    let mut report = report.timed(&stages);
     // A recording of before, which is as it was, has a certificate of its own.
     if let Some(out) = files.out.as_ref().filter(|_| is_recorded) {
         let mut places = Places::not_over(files.models.iter().map(|model| &model.what));

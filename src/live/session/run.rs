@@ -3,7 +3,6 @@
 use std::os::fd::OwnedFd;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 use lunula_live::latency::Latency as Times;
 use lunula_live::source::{Address, HostClock, MOST_WAITED, Place, Ready, wait};
@@ -26,7 +25,7 @@ use crate::live::steps::{live_steps, record_steps};
 use crate::live::switch::{of_another_model, read_switch};
 use crate::live::view::{Counts, Health, View};
 use crate::predictor::{Answering, open_models};
-use crate::stages::left_out;
+use crate::stages::{Stages, left_out};
 
 /// The loop looks up at least so often, nanoseconds: to be stopped, to find a lost source, to let readers in.
 const TICK_NS: u64 = 100_000_000;
@@ -264,7 +263,7 @@ impl<'a> Session<'a> {
     }
 
     fn run(mut self, job: &'static str, left_out: Vec<String>, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
-        let start = Instant::now();
+        let stages = Stages::default();
         let mut tick_ns = self.shared.clock.now_ns() + TICK_NS;
         let (mut ready, mut fault) = (None, None);
         while fault.is_none() && !watch.stop.load(Ordering::Relaxed) {
@@ -276,7 +275,7 @@ impl<'a> Session<'a> {
             ready = Some(self.wait(tick_ns)?);
         }
         let Self { files, lanes, shared, warnings, wake_up, .. } = self;
-        report(Ended { job, start, files, lanes, shared, warnings, left_out, wake_up, fault }, watch)
+        report(Ended { job, stages, files, lanes, shared, warnings, left_out, wake_up, fault }, watch)
     }
 
     /// Takes what has come, and what follows from time that has passed.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 use lunula_live::skill::{Contact, Figures, Force, noise_of_rate};
 use rayon::prelude::*;
@@ -77,7 +76,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<SkillReport, LiveError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let steps = plan(inputs.recordings.len(), inputs.reference.is_some(), options, outputs)?;
     let folder = &outputs.out;
@@ -139,7 +137,7 @@ pub fn run(
     if report.figures.reference.is_none() {
         report.unused(&["band"], "there is no reference to compare trials with");
     }
-    Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
+    Ok(report.timed(&stages).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }
 
 /// Reads a recording and looks at its trials.

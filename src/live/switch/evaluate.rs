@@ -5,7 +5,6 @@
 //! delays drawn, and `run.json`, the [`EvaluateSwitchReport`] with warnings and times.
 
 use std::path::Path;
-use std::time::Instant;
 
 use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
 use serde::Serialize;
@@ -54,7 +53,6 @@ pub fn evaluate_switch(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<EvaluateSwitchReport, LiveError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let config = read_switch(switch)?;
     let Outputs { out, figures, report: with_report, .. } = outputs;
@@ -90,7 +88,7 @@ pub fn evaluate_switch(
         report.pictures.push(stages.time("figures", || staging.draw("delays", draw))?);
     }
     report.warn_of_earlier(&out.join(REPORT));
-    let report = report.timed(&stages, start);
+    let report = report.timed(&stages);
     if *with_report {
         staging.write("switch.json", json_text(&report.figures).as_bytes())?;
         staging.write(REPORT, report.text().as_bytes())?;

@@ -5,7 +5,6 @@
 //! as `lunula live` makes them.
 
 use std::iter;
-use std::time::Instant;
 
 use lunula_live::switch::{Evaluation, Goal, Match, SwitchConfig, crossings_per_hour, matches, tune};
 
@@ -34,7 +33,6 @@ pub fn tune_switch(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<TuneReport, LiveError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let Outputs { out, figures, report, .. } = outputs;
     let report_at = report.then(|| beside(out, ".run.json"));
@@ -94,7 +92,7 @@ pub fn tune_switch(
         })?;
         report.pictures.push(drawn);
     }
-    Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
+    Ok(report.timed(&stages).commit(places, report_at.as_deref())?)
 }
 
 /// What would be done and what not.

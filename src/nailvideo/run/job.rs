@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
 
 use rayon::Scope;
 
@@ -80,7 +79,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<NailVideoReport, NailVideoError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let positions = positions(inputs.positions.as_deref())?;
     let mut video = Video::open(&inputs.video, options.threads)?;
@@ -199,7 +197,7 @@ pub fn run(
     let mut report = job.finish(work, counts, &kept, &positions, watch)?;
     report.failed.extend(video.damage());
     report.warnings.extend(info.warnings.iter().map(|why| format!("{}: {why}", inputs.video.display())));
-    let mut report = report.timed(&stages, start);
+    let mut report = report.timed(&stages);
     let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
     report.decoding_share = decoding / report.wall_s;
     if outputs.report {

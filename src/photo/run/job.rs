@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use image::GrayAlphaImage;
 use rayon::prelude::*;
@@ -50,13 +49,13 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<PhotosReport, PhotosError> {
-    let start = Instant::now();
+    let stages = Stages::default();
     let staging = Staging::new(&outputs.folder)?;
     let mut work = Work {
         options,
         outputs,
         staging: &staging,
-        stages: Stages::default(),
+        stages,
         poses: BTreeMap::new(),
         memory: Mutex::default(),
     };
@@ -146,7 +145,7 @@ pub fn run(
         nails.write(&staging)?;
         let compared = compare_channels(&samples, &staging, &stages)?;
         watch.go_on()?;
-        let mut report = of_photos(findings, poses, watch).timed(&stages, start);
+        let mut report = of_photos(findings, poses, watch).timed(&stages);
         if let Some(compared) = compared {
             report.notes.extend(compared.notes);
             report.warnings.extend(compared.warnings);

@@ -7,7 +7,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -68,9 +67,8 @@ type Files = BTreeMap<Member, PathBuf>;
 /// [`MergeError`]; nothing is written then.
 pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, MergeError> {
     let Gathering { parts, before, truth, figures, out } = *gathering;
-    let start = Instant::now();
-    let staging = Staging::new(out)?;
     let stages = Stages::default();
+    let staging = Staging::new(out)?;
     let (members, files) = stages.time("list sums", || list(parts))?;
     let before = before.and_then(|folder| Some((folder, Members::read(&folder.join(OF_MAPS)).ok()?)));
     let before = before.filter(|(_, earlier)| earlier.normalization == members.normalization);
@@ -113,7 +111,7 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
     let mut warnings = doubts_of_sums(&partials);
     warnings.extend(pose::doubts(|| members.names()).into_iter().chain(nails.at_one_place()));
     let figures = GatherFigures { poses, sums_added, sums_kept, normalization: partials.normalization, accuracy };
-    Ok(Report { left_out, warnings, notes, ..Report::new("maps", watch, figures) }.timed(&stages, start))
+    Ok(Report { left_out, warnings, notes, ..Report::new("maps", watch, figures) }.timed(&stages))
 }
 
 /// What the parts hold, by pose, from their lists alone.

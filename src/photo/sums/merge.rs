@@ -1,7 +1,6 @@
 //! Results of several runs joined: maps made in parts equal those made at once.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use super::partial;
 use crate::files::{Places, Staging};
@@ -18,15 +17,14 @@ use crate::stages::{Stages, Step};
 /// # Errors
 /// [`MergeError`]; nothing is written then.
 pub fn merge(parts: &[PathBuf], out: &Path, watch: &Watch<'_>) -> Result<PhotosReport, MergeError> {
-    let start = Instant::now();
+    let stages = Stages::default();
     Places::not_over(parts).check([out])?;
     let staging = Staging::new(out)?;
-    let stages = Stages::default();
     let partials = stages.time("join", || partial::join(parts))?;
     let nails = NailTable::of_parts(parts)?;
     let sheets = write_maps(&partials, true, &staging, &stages)?;
     nails.write(&staging)?;
-    let mut report = of_merge(parts, &partials, watch).timed(&stages, start);
+    let mut report = of_merge(parts, &partials, watch).timed(&stages);
     // Of one run its own report says it.
     let pictures: Vec<(String, PathBuf)> = nails.pictures(parts).map(|at| (at.display().to_string(), at)).collect();
     report.warnings.extend(copies(pictures.iter().map(|(name, at)| (name.clone(), at.as_path()))));

@@ -5,7 +5,6 @@
 //! row is written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
 
 use std::path::Path;
-use std::time::Instant;
 
 use crate::job::{Report, Watch};
 use crate::posture::angle::joints::Angles;
@@ -36,7 +35,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<PostureReport, PostureError> {
-    let start = Instant::now();
     let stages = Stages::default();
     // A name that no table can have is refused before the work begins.
     for table in std::iter::once(&outputs.joints).chain(&outputs.tracks) {
@@ -119,7 +117,7 @@ pub fn run(
         pictures,
         ..Report::new("posture", watch, figures)
     };
-    results.finish(report, &stages, start, outputs.report)
+    results.finish(report, &stages, outputs.report)
 }
 
 /// The markers that no frame shows, or only frames after those that names were given by.

@@ -2,7 +2,6 @@
 //! them.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use crate::clock::{ClockFit, ClockFormat};
 use crate::files::{Places, beside};
@@ -275,7 +274,6 @@ impl<'a> Results<'a> {
         self,
         report: PostureReport,
         stages: &Stages,
-        start: Instant,
         with_report: bool,
     ) -> Result<PostureReport, PostureError> {
         self.joints.finish()?;
@@ -285,7 +283,7 @@ impl<'a> Results<'a> {
         if let Some(overlay) = self.overlay {
             overlay.finish()?;
         }
-        let mut report = report.timed(stages, start);
+        let mut report = report.timed(stages);
         let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
         report.decoding_share = decoding / report.wall_s;
         let at = with_report.then(|| beside(&self.joints_path, ".run.json"));

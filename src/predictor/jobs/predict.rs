@@ -1,7 +1,6 @@
 //! `lunula predict`: voltages to forces and angle, of a recording; of a stream, `live` does it.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use lunula_predictor::{Contact, Gate};
 use serde::Serialize;
@@ -80,7 +79,6 @@ pub fn predict(
     out: &Path,
     watch: &Watch<'_>,
 ) -> Result<PredictReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     TableFormat::of(out)?;
     let mut places = Places::not_over(models.iter().map(PathBuf::as_path).chain([data]));
@@ -151,7 +149,7 @@ pub fn predict(
     if !answering.is_gated() {
         report.unused(&Answering::GATES, Answering::NO_GATE);
     }
-    Ok(report.timed(&stages, start))
+    Ok(report.timed(&stages))
 }
 
 /// What would be done and what not, with so many models; `ambient`: the step of the recording's ambient light.

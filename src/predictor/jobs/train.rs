@@ -5,7 +5,6 @@
 //! those that training has seen.
 
 use std::path::PathBuf;
-use std::time::Instant;
 
 use clap::{Args, ValueHint};
 use lunula_predictor::{
@@ -126,7 +125,6 @@ pub fn train(
     outputs: &TrainOutputs,
     watch: &Watch<'_>,
 ) -> Result<TrainReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     if outputs.learning_curve.is_some() && inputs.validate.is_empty() {
         let what = "a learning curve shows errors on recordings that are not trained on; name some with --validate";
@@ -260,7 +258,7 @@ pub fn train(
     if inputs.validate.is_empty() {
         report.unused(&["level"], "intervals come from the recordings of --validate");
     }
-    Ok(report.timed(&stages, start))
+    Ok(report.timed(&stages))
 }
 
 /// What to say where one model is of several persons.

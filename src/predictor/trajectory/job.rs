@@ -1,7 +1,6 @@
 //! The trajectory job: options in, a table with its report and pictures out.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use super::check::faults;
 use super::cone::cone_chart;
@@ -57,7 +56,6 @@ pub fn run(
     outputs: &Outputs,
     watch: &Watch<'_>,
 ) -> Result<TrajectoryReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let steps = plan(options, outputs)?;
     TableFormat::of(&outputs.out)?;
@@ -87,7 +85,7 @@ pub fn run(
     let left_out = left_out(steps);
     let report = Report { left_out, warnings, pictures, ..Report::new("trajectory", watch, figures) };
     let at = outputs.report.then(|| beside(&outputs.out, ".run.json"));
-    Ok(report.timed(&stages, start).commit(places, at.as_deref())?)
+    Ok(report.timed(&stages).commit(places, at.as_deref())?)
 }
 
 /// Rows that are looked at for what they leave out.

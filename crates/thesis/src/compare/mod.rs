@@ -17,7 +17,6 @@ mod results;
 #[cfg(test)]
 mod tests;
 
-use std::time::Instant;
 
 use rayon::prelude::*;
 
@@ -43,7 +42,6 @@ pub fn compare(
     out: Option<&Outputs>,
     watch: &Watch<'_>,
 ) -> Result<CompareReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     if people.is_empty() || options.models.is_empty() {
         return Err(PredictorError::Request("nothing is compared; name people and models".to_owned()));
@@ -60,7 +58,7 @@ pub fn compare(
     let figures = CompareFigures { people: people.iter().map(|person| person.name.clone()).collect(), comparisons };
     let left_out = left_out(compare_plan(people.len(), options, out));
     let report = Report { left_out, warnings: warnings.concat(), ..Report::new("compare", watch, figures) };
-    end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
+    end(report, out, |report, out| results::write(report, out, &stages), &stages)
 }
 
 /// What would be done and what not, of so many people.

@@ -18,7 +18,6 @@ mod tests;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
 use serde::Serialize;
@@ -104,7 +103,7 @@ pub fn study_page(
     out: &Path,
     watch: &Watch<'_>,
 ) -> anyhow::Result<PageReport> {
-    let start = Instant::now();
+    let stages = Stages::default();
     let subject = options.subject.as_deref().unwrap_or_default();
     let shown: Vec<&PartFolder> = Part::all().filter_map(|part| chosen(folders, part, subject)).collect();
     let mut warnings = Vec::new();
@@ -168,7 +167,7 @@ pub fn study_page(
     let [agree, do_not, cannot_tell] = counts(judged.iter());
     let figures = PageFigures { figures, figures_lacking: lacking.clone(), agree, do_not, cannot_tell, by_kind };
     let report = Report { left_out: lacking, warnings, ..Report::new("study", watch, figures) };
-    Ok(report.timed(&Stages::default(), start))
+    Ok(report.timed(&stages))
 }
 
 /// The folder of a part that is shown: the named subject's, else the first's.

@@ -21,7 +21,6 @@ mod table;
 mod tests;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -127,7 +126,7 @@ pub(crate) fn responses(
     out: &Path,
     watch: &Watch<'_>,
 ) -> Result<ResponsesReport, ResponsesError> {
-    let (start, stages) = (Instant::now(), Stages::default());
+    let stages = Stages::default();
     if files.is_empty() {
         return Err(ResponsesError::Request("no recording is given; name at least one".to_owned()));
     }
@@ -148,7 +147,7 @@ pub(crate) fn responses(
     let figures = ResponsesFigures { drive: options.drive.clone(), cycles, range, numbers };
     let left_out = left_out(steps(options));
     let report = Report { left_out, warnings, notes, ..Report::new("responses", watch, figures) };
-    Ok(report.timed(&stages, start))
+    Ok(report.timed(&stages))
 }
 
 /// Recordings with their cycles and averages.

@@ -7,7 +7,6 @@ mod report;
 mod results;
 
 use std::path::Path;
-use std::time::Instant;
 
 use lunula_predictor::{Model, Modes, Predictor, linear_f0, modes, quadratic_printed, quadratic_terms};
 
@@ -24,7 +23,6 @@ pub use report::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed};
 /// # Errors
 /// [`PredictorError`] where there is nothing to tell.
 pub fn analyse(model: &Path, out: Option<&Outputs>, watch: &Watch<'_>) -> Result<AnalyseReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let mut notes = Vec::new();
     let (predictor, mut warnings) = open_models(&[model.to_owned()])?.one();
@@ -72,7 +70,7 @@ pub fn analyse(model: &Path, out: Option<&Outputs>, watch: &Watch<'_>) -> Result
     };
     let left_out = left_out(analyse_plan(out));
     let report = Report { left_out, warnings, notes, ..Report::new("analyse", watch, figures) };
-    end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
+    end(report, out, |report, out| results::write(report, out, &stages), &stages)
 }
 
 /// Refuses a Jacobian that no number holds, though the model itself is scaled and sound.

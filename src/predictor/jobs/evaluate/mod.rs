@@ -11,7 +11,6 @@ mod results;
 mod splits;
 
 use std::path::Path;
-use std::time::Instant;
 
 use lunula_predictor::{
     By, ByMagnitude, Dataset, Kind, Predictor, Recipe, by_magnitude, coverage, cross_coverage, cross_validate,
@@ -71,7 +70,6 @@ pub fn evaluate(
     out: Option<&Outputs>,
     watch: &Watch<'_>,
 ) -> Result<EvaluateReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let (predictor, mut warnings) = open_models(&[model.to_owned()])?.one();
     let wanted = Wanted {
@@ -146,7 +144,7 @@ pub fn evaluate(
         report.unused(&["folds", "seed", "level"], "nothing is held out without --by or --splits");
     }
     let eigennails = predictor.eigennails();
-    end(report, out, |report, out| results::write(report, &shown, eigennails, out, &stages), &stages, start)
+    end(report, out, |report, out| results::write(report, &shown, eigennails, out, &stages), &stages)
 }
 
 /// What to say of predictions that are no finite numbers, which no figure of merit counts.

@@ -7,7 +7,6 @@
 mod report;
 mod results;
 
-use std::time::Instant;
 
 use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
 
@@ -31,7 +30,6 @@ pub fn prune(
     out: Option<&Outputs>,
     watch: &Watch<'_>,
 ) -> Result<PruneReport, PredictorError> {
-    let start = Instant::now();
     let stages = Stages::default();
     let train = stages.time("read", || read_files(data, wanted))?;
     let inputs = train.data.inputs().to_vec();
@@ -84,7 +82,7 @@ pub fn prune(
     warnings.extend(no_better(&figures));
     watch.go_on()?;
     let report = Report { left_out, warnings, notes, ..Report::new("prune", watch, figures) };
-    end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
+    end(report, out, |report, out| results::write(report, out, &stages), &stages)
 }
 
 /// That even all photodiodes say less of what is compared on than none of them, by the targets.
