@@ -8,6 +8,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use lunula_live::wire::with_decimal_comma;
 use unicode_normalization::UnicodeNormalization;
 
+/// Each of `all` once, in the order in which they first appear.
+pub fn in_order<T: PartialEq>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+    grouped(all.into_iter().map(|one| (one, ()))).into_iter().map(|(one, _)| one).collect()
+}
+
+/// What has the same key together, in the order in which keys first appear.
+pub(crate) fn grouped<K: PartialEq, V>(all: impl IntoIterator<Item = (K, V)>) -> Vec<(K, Vec<V>)> {
+    let mut groups: Vec<(K, Vec<V>)> = Vec::new();
+    for (key, one) in all {
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, group)) => group.push(one),
+            None => groups.push((key, vec![one])),
+        }
+    }
+    groups
+}
+
 /// A choice of few, each with a word.
 pub trait Words: Copy + PartialEq + Send + Sync + 'static {
     /// Each choice, its word and what it means; the meaning may be empty.

@@ -1,7 +1,6 @@
 //! The alignment job: a table of joint angles and a log in, a labelled set with its certificate out; the one entry that
 //! command line, pipelines and trade-offs call.
 
-
 use crate::align::certificate::Certificate;
 use crate::align::error::AlignError;
 use crate::align::export::BidsNames;

@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use super::recording::ReadRecording;
 use super::{FitInputs, FitOptions};
+use crate::words::{grouped, in_order};
 
 /// Two values differ where they are so many of their standard errors apart, and by so much of the smaller one
 /// (assumed; 120 fits of two to four phantom recordings of one finger, of steps, waves and equilibria, with noise of
@@ -48,14 +49,9 @@ struct Part<'a> {
 
 /// Each person's recordings where there are several persons, then each of those of whom there are several.
 fn parts(inputs: &FitInputs) -> Vec<Part<'_>> {
-    let mut persons: Vec<Part<'_>> = Vec::new();
-    for k in 0..inputs.recordings.len() {
-        let person = inputs.subject(k);
-        match persons.iter_mut().find(|part| part.person == person) {
-            Some(part) => part.recordings.push(k),
-            None => persons.push(Part { person, is_one_of: false, recordings: vec![k] }),
-        }
-    }
+    let of_person = |(person, recordings)| Part { person, is_one_of: false, recordings };
+    let all = (0..inputs.recordings.len()).map(|k| (inputs.subject(k), k));
+    let mut persons: Vec<Part<'_>> = grouped(all).into_iter().map(of_person).collect();
     let several = persons.iter().filter(|part| part.recordings.len() > 1);
     let each = several.flat_map(|part| {
         part.recordings.iter().map(|&k| Part { person: part.person, is_one_of: true, recordings: vec![k] })
@@ -131,12 +127,8 @@ fn of_alike(all: &[Alone], options: &FitOptions) -> Vec<String> {
         Calibration::PerSubject => !are_persons,
         Calibration::PerRecording | Calibration::Fixed => false,
     };
-    let mut symbols: Vec<Symbol> = Vec::new();
-    for (symbol, _) in all.iter().flat_map(|one| &one.scalings).filter(|_| is_shared) {
-        if !symbols.contains(symbol) {
-            symbols.push(*symbol);
-        }
-    }
+    let scalings = all.iter().flat_map(|one| &one.scalings).filter(|_| is_shared);
+    let symbols = in_order(scalings.map(|(symbol, _)| *symbol));
     let of_scaling = |symbol: Symbol| {
         let value = |one: &Alone| {
             let (_, estimate) = one.scalings.iter().find(|(own, _)| *own == symbol)?;

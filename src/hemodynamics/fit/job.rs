@@ -18,6 +18,7 @@ use crate::job::{Outputs, Report, Watch};
 use crate::log::{ambient_step_of, doubts::alternating};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
+use crate::words::in_order;
 
 /// The stage that fits parts of the recordings.
 const ALONE: &str = "each by itself";
@@ -376,13 +377,7 @@ fn places(inputs: &FitInputs, options: &FitOptions, outputs: &Outputs) -> Result
 
 /// The subjects of recordings, where any are named.
 fn subjects_of(inputs: &FitInputs, recordings: &[usize]) -> Vec<String> {
-    let mut subjects: Vec<String> = Vec::new();
-    for subject in recordings.iter().filter_map(|&k| inputs.subjects.get(k)) {
-        if !subjects.contains(subject) {
-            subjects.push(subject.clone());
-        }
-    }
-    subjects
+    in_order(recordings.iter().filter_map(|&k| inputs.subjects.get(k)).cloned())
 }
 
 /// Writes measured and fitted voltages, one row per sample.

@@ -2,6 +2,8 @@
 
 use lunula_hemodynamics::{Parameters, Symbol};
 
+use crate::words::in_order;
+
 /// A symbol without its unit.
 fn short(symbol: Symbol) -> String {
     let name = symbol.to_string();
@@ -45,13 +47,8 @@ fn numbered(symbol: Symbol) -> bool {
 
 /// That names stand for nothing, with those that there are.
 pub(super) fn no_such(unknown: &[&str], parameters: &Parameters) -> String {
-    let mut names: Vec<String> = Vec::new();
-    for symbol in parameters.symbols() {
-        let family = if numbered(symbol) { family(symbol) } else { short(symbol) };
-        if !names.contains(&family) {
-            names.push(family);
-        }
-    }
+    let name = |symbol| if numbered(symbol) { family(symbol) } else { short(symbol) };
+    let names = in_order(parameters.symbols().into_iter().map(name));
     format!(
         "--free {}: there is no such parameter; there are {} (of all units alike), of a single unit as k_C1, or whole \
          names as k_C1_N_per_m",

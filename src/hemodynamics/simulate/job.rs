@@ -1,6 +1,5 @@
 //! The run: options in, a table with its report and picture out.
 
-
 use lunula_hemodynamics::{Load, Parameters};
 
 use super::report::{Collapsed, LoadsReport, SimulateFigures, SimulateReport};

@@ -5,17 +5,7 @@ use std::collections::BTreeMap;
 use lunula_live::spread::Spread;
 
 use super::report::{FingerFigures, FingerSpread, MEASURES, PersonFigures, TrialFigures};
-
-/// Names in the order in which they first appear.
-fn in_order<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
-    let mut names = Vec::new();
-    for name in all {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
-}
+use crate::words::in_order;
 
 pub(super) fn fingers(trials: &[TrialFigures]) -> Vec<String> {
     in_order(trials.iter().flat_map(|trial| &trial.fingers).map(|one| one.finger.clone()))

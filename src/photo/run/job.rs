@@ -51,14 +51,8 @@ pub fn run(
 ) -> Result<PhotosReport, PhotosError> {
     let stages = Stages::default();
     let staging = Staging::new(&outputs.folder)?;
-    let mut work = Work {
-        options,
-        outputs,
-        staging: &staging,
-        stages,
-        poses: BTreeMap::new(),
-        memory: Mutex::default(),
-    };
+    let mut work =
+        Work { options, outputs, staging: &staging, stages, poses: BTreeMap::new(), memory: Mutex::default() };
     for photo in &set.photos {
         let pose = work.poses.entry(&photo.pose).or_default();
         pose.get_mut().unwrap_or_else(PoisonError::into_inner).left += 1;

@@ -13,6 +13,7 @@ use ndarray::{ArrayView1, ArrayView2, Axis, Slice, concatenate};
 
 use super::health::called;
 use crate::median::ends;
+use crate::words::grouped;
 
 /// The least that is called standing still, rows and seconds; and as rows of the rest for each unknown (assumed).
 const ROWS: usize = 20;
@@ -28,17 +29,11 @@ const MOVED: f64 = 0.5;
 pub(super) fn warnings(data: &Dataset) -> Vec<String> {
     let names: Vec<&String> = data.inputs().iter().chain(data.targets()).collect();
     let of_recording = |one: &Recording| {
-        let mut held: Vec<(Range<usize>, Vec<&str>)> = Vec::new();
-        for (column, name) in names.iter().enumerate() {
-            let rest = |run: &Range<usize>| [one.rows.start..run.start, run.end..one.rows.end];
-            let Some(run) = longest_run(data, one, column).filter(|run| moved(data, column, run, &rest(run))) else {
-                continue;
-            };
-            match held.iter_mut().find(|(other, _)| *other == run) {
-                Some((_, names)) => names.push(name),
-                None => held.push((run, vec![name])),
-            }
-        }
+        let rest = |run: &Range<usize>| [one.rows.start..run.start, run.end..one.rows.end];
+        let held = names.iter().enumerate().filter_map(|(column, name)| {
+            let run = longest_run(data, one, column).filter(|run| moved(data, column, run, &rest(run)))?;
+            Some((run, name.as_str()))
+        });
         let say = |(run, names): (Range<usize>, Vec<&str>)| {
             let [from, to] = [run.start, run.end - 1].map(|row| data.time_s()[row]);
             let when = if from.is_nan() { String::new() } else { format!(" from {from:.1} to {to:.1} s") };
@@ -50,7 +45,12 @@ pub(super) fn warnings(data: &Dataset) -> Vec<String> {
                 called(data)
             )
         };
-        held.into_iter().map(say).chain(all_at_once(data, one)).chain(never_moves(data, one)).collect::<Vec<_>>()
+        grouped(held)
+            .into_iter()
+            .map(say)
+            .chain(all_at_once(data, one))
+            .chain(never_moves(data, one))
+            .collect::<Vec<_>>()
     };
     data.recordings().iter().flat_map(of_recording).collect()
 }

@@ -7,6 +7,7 @@ use ndarray::{Array2, ArrayView1, ArrayView2};
 
 use crate::median::ends;
 use crate::predictor::data::looks;
+use crate::words::grouped;
 
 /// The share of rows outside of what was trained on from which it is said (assumed).
 const OUTSIDE: f64 = 0.05;
@@ -32,15 +33,10 @@ pub(in crate::predictor) fn doubts(
     values: &Array2<f64>,
 ) -> Vec<String> {
     // Targets that go astray alike are one warning.
-    let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
-    for (k, target) in seen.targets().iter().enumerate() {
+    let alike = grouped(seen.targets().iter().enumerate().filter_map(|(k, target)| {
         let trained = predictor.targets().get(k).map(|channel| channel.high - channel.low);
-        let Some(looks) = astray(seen.y().column(k), values.column(k), trained) else { continue };
-        match alike.iter_mut().find(|(others, _)| *others == looks) {
-            Some((_, targets)) => targets.push(target),
-            None => alike.push((looks, vec![target])),
-        }
-    }
+        Some((astray(seen.y().column(k), values.column(k), trained)?, target.as_str()))
+    }));
     let mut doubts: Vec<String> =
         alike.iter().map(|(looks, targets)| format!("{}: {looks}", targets.join(", "))).collect();
     if !doubts.is_empty() {

@@ -17,7 +17,6 @@ mod results;
 #[cfg(test)]
 mod tests;
 
-
 use rayon::prelude::*;
 
 pub(crate) use halves::HalvesJob;

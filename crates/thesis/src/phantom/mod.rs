@@ -44,7 +44,7 @@ use lunula::job::{Keys, OptionFault, read};
 use lunula::phantom::photos::{LightKind, PhotoOptions};
 use lunula::phantom::{Faults, Generated as _};
 use lunula::pipeline::{Asked, Block, Placed};
-use lunula::words::Words;
+use lunula::words::{Words, in_order};
 use presses::PressOptions;
 
 /// The tables' folder, and which of its files says what was asked for.
@@ -133,13 +133,8 @@ impl Study {
             }
         }
         // All videos are alike, and all logs: what is wrong with one is said once.
-        let mut faults = Faults::default();
-        for fault in entries.iter().filter_map(|(one, _)| one.recording.check().err()).flat_map(|faults| faults.0) {
-            if !faults.0.contains(&fault) {
-                faults.0.push(fault);
-            }
-        }
-        faults.none()?;
+        let faults = entries.iter().filter_map(|(one, _)| one.recording.check().err()).flat_map(|faults| faults.0);
+        Faults(in_order(faults)).none()?;
         Ok(Self { options, subjects, entries })
     }
 

@@ -14,6 +14,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::Numbers;
+use lunula::words::in_order;
 pub use read::StatementsError;
 use test::Condition;
 
@@ -138,13 +139,7 @@ impl Statements {
 impl Statement {
     /// The quantities that it depends on, each once.
     fn names(&self) -> Vec<&str> {
-        let mut names = Vec::new();
-        for name in self.conditions.iter().flat_map(Condition::names) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
+        in_order(self.conditions.iter().flat_map(Condition::names))
     }
 
     /// Whether the numbers agree. One condition that fails is enough, whatever is missing of the others.
@@ -178,12 +173,6 @@ impl Statement {
         let first = names.first().and_then(|name| Some(name.split_once('.')?.0)).unwrap_or_default();
         let part = format!("{first}.");
         let part = if names.iter().all(|name| name.starts_with(&part)) { part.as_str() } else { "" };
-        let mut found = Vec::new();
-        for text in self.conditions.iter().flat_map(|one| one.found(numbers, part)) {
-            if !found.contains(&text) {
-                found.push(text);
-            }
-        }
-        found.join("; ")
+        in_order(self.conditions.iter().flat_map(|one| one.found(numbers, part))).join("; ")
     }
 }

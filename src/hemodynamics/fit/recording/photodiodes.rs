@@ -3,7 +3,7 @@
 use super::ReadRecording;
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::given::listed;
-use crate::words::nearest;
+use crate::words::{in_order, nearest};
 
 /// A photodiode's column, and the capillary unit below it, from 0 at the proximal end.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -94,12 +94,7 @@ pub(in crate::hemodynamics::fit) fn all_there(
     named: &[PhotodiodeColumn],
     recordings: &[ReadRecording],
 ) -> Result<(), HemodynamicsError> {
-    let mut there: Vec<String> = Vec::new();
-    for name in recordings.iter().flat_map(|read| &read.columns) {
-        if !there.contains(name) {
-            there.push(name.clone());
-        }
-    }
+    let there = in_order(recordings.iter().flat_map(|read| &read.columns).cloned());
     let unnamed: Vec<&str> =
         there.iter().map(String::as_str).filter(|name| named.iter().all(|one| one.name != *name)).collect();
     let missing = named.iter().filter(|one| !there.contains(&one.name)).map(|PhotodiodeColumn { name, unit }| {

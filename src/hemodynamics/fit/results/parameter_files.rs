@@ -8,6 +8,7 @@ use crate::files::{Places, beside};
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::fit::{FitInputs, FitOptions, fitted};
 use crate::job::Outputs;
+use crate::words::grouped;
 
 /// Parameter files and whose recordings each is for: one for all whose photodiodes have the same offset and scaling.
 pub(in crate::hemodynamics::fit) fn parameter_paths(
@@ -24,18 +25,13 @@ pub(in crate::hemodynamics::fit) fn parameter_paths(
             named.unwrap_or_else(|| path.file_stem().unwrap_or_default().to_owned()).to_string_lossy().into_owned()
         }
     };
-    let mut labels: Vec<(String, Vec<usize>)> = Vec::new();
-    for k in 0..inputs.recordings.len() {
-        let shared = options.calibrate != Calibration::PerRecording;
-        match labels.iter_mut().find(|(own, _)| shared && *own == label(k)) {
-            Some((_, own)) => own.push(k),
-            None => labels.push((label(k), vec![k])),
-        }
-    }
+    // Recordings of one label are apart where each has its own.
+    let apart = |k: usize| (options.calibrate == Calibration::PerRecording).then_some(k);
+    let labels = grouped((0..inputs.recordings.len()).map(|k| ((label(k), apart(k)), k)));
     let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    let names: Vec<String> = labels.iter().map(|(label, _)| label.chars().map(plain).collect()).collect();
+    let names: Vec<String> = labels.iter().map(|((label, _), _)| label.chars().map(plain).collect()).collect();
     let all = labels.len();
-    let one = |(k, (_, own)): (usize, (String, Vec<usize>))| {
+    let one = |(k, (_, own)): (usize, (_, Vec<usize>))| {
         // Recordings of several folders may have one name.
         let name = &names[k];
         let ending = match (all, names[..k].iter().filter(|before| *before == name).count()) {

@@ -3,6 +3,7 @@
 
 use crate::phantom::video::draw::row::Row;
 use crate::phantom::video::scene::Scene;
+use crate::words::grouped;
 
 /// A screen to be drawn.
 pub(in crate::phantom::video) struct Screen {
@@ -25,18 +26,11 @@ impl Screen {
         let clock = scene.options.clock.as_ref()?;
         let roi = scene.options.clock_roi_px(clock);
         let time_s = scene.time_s(frame);
-        let mut texts: Vec<(String, usize)> = Vec::new();
-        for look in 0..Self::LOOKS {
-            let at = time_s + exposure_s * ((look as f64 + 0.5) / Self::LOOKS as f64 - 0.5);
-            let (text, _) = clock.shown(at);
-            match texts.iter_mut().find(|(known, _)| *known == text) {
-                Some((_, count)) => *count += 1,
-                None => texts.push((text, 1)),
-            }
-        }
+        let at = |look: usize| time_s + exposure_s * ((look as f64 + 0.5) / Self::LOOKS as f64 - 0.5);
+        let texts = grouped((0..Self::LOOKS).map(|look| (clock.shown(at(look)).0, look)));
         let mut lit = vec![0.0; roi[2] * roi[3]];
-        for (text, count) in texts {
-            let share = count as f32 / Self::LOOKS as f32;
+        for (text, looks) in texts {
+            let share = looks.len() as f32 / Self::LOOKS as f32;
             lit.iter_mut().zip(clock.panel(&text, roi[2], roi[3])).for_each(|(sum, one)| *sum += share * one);
         }
         let (back, front) = if clock.light_digits {

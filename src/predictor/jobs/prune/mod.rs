@@ -7,7 +7,6 @@
 mod report;
 mod results;
 
-
 use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
 
 use crate::job::{Outputs, Report, Watch};
