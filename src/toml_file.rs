@@ -73,7 +73,6 @@ const MOST_BROKEN: usize = 3;
 pub(crate) struct Findings<'a> {
     text: &'a str,
     faults: Vec<Fault>,
-    /// How many more there are.
     more: usize,
 }
 

@@ -124,7 +124,6 @@ fn results_and_outlines_come_together_or_not_at_all() {
     assert!(dir.path("found/photos.csv").is_file() && dir.path("out/nails.csv").is_file());
 }
 
-/// Hidden entries of a folder.
 fn hidden(dir: &Dir, folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(dir.path(folder)).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().into_string().ok()).filter(|name| name.starts_with('.')).collect()

@@ -152,7 +152,6 @@ fn no_room_uses_one_of_its_own_floor_or_above() {
 const OPEN_FOLDERS: [&str; 4] = ["src", "tests", "tests/corpus", "crates/hemodynamics/tests/reference"];
 /// The most entries of any other folder.
 const MOST_ENTRIES: usize = 12;
-/// The most columns of a line.
 const MOST_COLUMNS: usize = 120;
 /// Tables of numbers, a number of 60 digits a line.
 const NUMBERS: &str = "crates/hemodynamics/src/radau/tables.rs";

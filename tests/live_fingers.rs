@@ -18,7 +18,6 @@ fn sensor(from_s: f64, step_s: f64, rows: u32, pressing_n: impl Fn(f64) -> f64) 
     text
 }
 
-/// A press of a newton from `from_s` to `to_s`.
 fn press(from_s: f64, to_s: f64) -> impl Fn(f64) -> f64 {
     move |t_s| if (from_s..to_s).contains(&t_s) { 1.0 } else { 0.0 }
 }

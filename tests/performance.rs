@@ -218,7 +218,6 @@ fn one_operator_and_one_method_are_enough() {
     answer.says("virtual and pendant: no operator did the same trial with both");
 }
 
-/// The answer to a table of trials.
 #[track_caller]
 fn judged(dir: &Dir, trials: String) -> Answer {
     dir.write("trials.csv", trials);

@@ -54,7 +54,6 @@ fn counts(answer: &Answer) -> [u64; 3] {
     ["done", "kept", "failed"].map(|key| counted[key].as_u64().expect("a count"))
 }
 
-/// The results of a stage with their bytes.
 fn results(dir: &Dir, out: &str, stage: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
     dir.bytes_of(&format!("{out}/{stage}"))
 }

@@ -150,7 +150,6 @@ fn prompts(dir: &Dir, arguments: &[&str]) -> (Child, Prompter) {
     (child, Prompter(page))
 }
 
-/// The prompter's page.
 struct Prompter(Page);
 
 impl Prompter {

@@ -27,7 +27,6 @@ pub enum CameraError {
     Interrupted(#[from] Interrupted),
 }
 
-/// The most failures that an error lists.
 const MOST_LISTED: usize = 20;
 
 fn listed(failed: &[String]) -> String {

@@ -37,7 +37,6 @@ impl TilePicture {
         }
     }
 
-    /// Row `y` as samples of a sheet.
     fn draw_row<P: Tone>(&self, y: u32, to: &mut [u8]) {
         let width = self.size()[0] as usize;
         let to = to.chunks_exact_mut(P::CHANNEL_COUNT.into()).take(width);

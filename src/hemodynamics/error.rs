@@ -41,7 +41,6 @@ pub enum HemodynamicsError {
 }
 
 impl HemodynamicsError {
-    /// Why the model has no answer.
     pub(super) fn model(why: impl Display) -> Self {
         Self::Model(why.to_string())
     }

@@ -33,7 +33,6 @@ pub use simulate::{
 };
 pub use solve::{Run, RunSettings, respond};
 
-/// Parameters by their names in files.
 fn named(parameters: &Parameters) -> Vec<(String, f64)> {
     let of = |symbol: lunula_hemodynamics::Symbol| Some((symbol.to_string(), parameters.get(symbol)?));
     parameters.symbols().into_iter().filter_map(of).collect()

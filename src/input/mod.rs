@@ -187,7 +187,6 @@ pub(crate) fn end_lines(bytes: &mut [u8]) {
     }
 }
 
-/// As [`read()`], of text.
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "is not UTF-8 text"))
 }

@@ -14,7 +14,6 @@ const BASE_BYTES: u64 = 48_000_000;
 const BYTES_A_BYTE: u64 = 5;
 /// Reading a byte takes so long, seconds (12 000 rows of 1.4 MB in 15 ms).
 const READ_S: f64 = 1.1e-8;
-/// Bytes of a row.
 const BYTES_A_ROW: f64 = 110.0;
 
 /// Whether ambient light will be subtracted: only from raw logs whose LED goes on and off.

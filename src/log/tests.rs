@@ -28,7 +28,6 @@ fn error_of(text: &str) -> String {
     read(text).map(|log| panic!("{log:?}")).unwrap_err().to_string()
 }
 
-/// A mapping, with a unit of time.
 fn timed(text: &str, unit: TimeUnit) -> Columns {
     let mut columns = Columns::parse(text).unwrap();
     columns.time_unit = Some(unit);

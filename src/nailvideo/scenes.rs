@@ -19,7 +19,6 @@ pub(in crate::nailvideo) struct Shot {
     pub(in crate::nailvideo) rod: Option<[f64; 2]>,
     /// Light: factor on the samples, and its slope across the picture's width.
     pub(in crate::nailvideo) light: [f64; 2],
-    /// The nail is there.
     pub(in crate::nailvideo) nail: bool,
 }
 

@@ -39,7 +39,6 @@ pub(super) enum Says<'a> {
     AsItWas,
 }
 
-/// Where an outline was saved.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Saved {
     pub(super) path: PathBuf,

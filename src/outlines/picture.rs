@@ -187,7 +187,6 @@ impl Shown {
 pub(super) struct Parts(Mutex<Vec<Arc<Shown>>>);
 
 impl Parts {
-    /// A part of the photograph `number`.
     pub(super) fn get(&self, number: usize, photo: &Photograph, view: View) -> Result<Arc<Shown>, String> {
         let is = |one: &Arc<Shown>| one.photo == number && one.view == view;
         let known = locked(&self.0).iter().find(|one| is(one)).cloned();

@@ -48,7 +48,6 @@ struct Seen<'a> {
     can_undo: bool,
 }
 
-/// Of what there is now.
 pub(super) fn now<'a>(set: &'a PhotoSet, state: &'a State) -> Now<'a> {
     let decided = |decision| state.items.iter().filter(|item| item.decision == Some(decision)).count();
     let is_open = |rank: Rank| rank <= Rank::Missing;

@@ -271,7 +271,6 @@ pub(crate) fn as_rgb8(image: &DynamicImage) -> Cow<'_, RgbImage> {
     }
 }
 
-/// As [`Photograph::is_grey`].
 pub(crate) fn is_grey(image: &DynamicImage) -> bool {
     match image {
         DynamicImage::ImageRgb8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
@@ -324,7 +323,6 @@ fn decoder_for(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, ImageFormat), Re
     Ok((reader.into_decoder()?, format))
 }
 
-/// A format that is read.
 fn known(format: Option<ImageFormat>) -> Result<ImageFormat, ReadFault> {
     use ImageFormat::{Bmp, Jpeg, Png, Tiff};
     format.filter(|format| matches!(format, Png | Jpeg | Tiff | Bmp)).ok_or(ReadFault::NotAPicture)

@@ -70,7 +70,6 @@ impl OpenedModels {
         }
     }
 
-    /// The checksum of the model that predicts a column.
     pub(crate) fn sha256_of(&self, column: &str) -> Option<&str> {
         let mut each = self.predictors.iter().zip(&self.sha256);
         each.find_map(|(one, sha256)| one.target_names().iter().any(|name| name == column).then_some(sha256.as_str()))

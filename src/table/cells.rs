@@ -66,7 +66,6 @@ impl CsvCells {
         Ok(all.with_names())
     }
 
-    /// How many rows.
     pub(super) fn rows(&self) -> usize {
         self.rows.len()
     }

@@ -24,7 +24,6 @@ fn fill(path: &Path, columns: Vec<Column>, facts: &[(String, String)], fill: imp
     table.finish().unwrap();
 }
 
-/// A folder and the table of `rows` in it.
 fn written(extension: &str, rows: &[[Value<'_>; 5]]) -> (Folder, PathBuf) {
     let folder = Folder::new();
     let path = folder.path("t").with_extension(extension);

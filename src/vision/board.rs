@@ -40,11 +40,9 @@ const GLANCE: i32 = 3;
 /// What a picture shows of a board.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Sought {
-    /// All of it.
     Whole(Corners),
     /// One of another size, or a part of one: this many inner corners across and down.
     OfSize([usize; 2]),
-    /// None.
     Nowhere,
 }
 

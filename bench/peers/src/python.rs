@@ -11,7 +11,6 @@ use serde::Deserialize;
 
 /// How to get the packages.
 const REQUIREMENTS: &str = include_str!("../requirements.txt");
-/// Where the scripts are.
 const SCRIPTS: &str = env!("CARGO_MANIFEST_DIR");
 /// A script that takes longer is stopped.
 const MOST_S: u64 = 300;

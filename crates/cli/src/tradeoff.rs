@@ -133,7 +133,6 @@ struct Measured {
 }
 
 impl Measured {
-    /// Measures `job` as `change` makes the plan.
     fn run(&self, job: curves::Job, change: impl FnOnce(&mut Plan)) -> anyhow::Result<Outcome> {
         let stop = self.measuring.common.start()?;
         let mut plan = self.measuring.plan(REPEATS, self.seed, stop);

@@ -85,7 +85,6 @@ impl State {
         Ok(())
     }
 
-    /// As [`State::check`], of a model of so many walls.
     pub(crate) fn check_walls(&self, walls: usize) -> Result<(), StateFault> {
         self.check()?;
         match self.lumens.len() {

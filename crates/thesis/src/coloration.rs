@@ -93,7 +93,6 @@ fn region(name: &str) -> Within {
     REGIONS.iter().find(|(own, _)| *own == name).map_or(|_, _| false, |(_, within)| *within)
 }
 
-/// The mean of a region of a normalized picture.
 pub(crate) fn region_mean(picture: &Array2<f32>, name: &str) -> Option<f64> {
     Map(picture.clone()).mean(region(name))
 }

@@ -13,7 +13,6 @@ const SEC_FETCH_DEST: HeaderName = HeaderName::from_static("sec-fetch-dest");
 const API: &str = "/api/";
 /// Where the token is exchanged for the cookie.
 pub(crate) const SESSION: &str = "/api/session";
-/// Which pages there are.
 pub(crate) const PAGES: &str = "/api/pages";
 
 /// Whom to let in.

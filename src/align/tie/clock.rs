@@ -11,7 +11,6 @@ use crate::clock;
 use crate::median::{SD_OF_MAD, ends, median_of};
 use crate::timebase::Timebase;
 
-/// Resolutions that clocks have, seconds.
 const RESOLUTIONS_S: [f64; 5] = [1.0, 0.1, 0.01, 1e-3, 1e-4];
 /// Readings are multiples of the resolution but for so many seconds.
 const ROUNDED_S: f64 = 1e-6;

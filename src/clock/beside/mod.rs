@@ -68,7 +68,6 @@ pub(in crate::clock) struct Beside {
 }
 
 impl Beside {
-    /// Looks beside the first and the last of the cells.
     pub(in crate::clock) fn look(gray: &Gray, cells: &Cells, [first, last]: [Cut; 2]) -> Self {
         let scene = Scene::new(gray, cells);
         Self { sides: [scene.side(first, true), scene.side(last, false)] }
@@ -94,7 +93,6 @@ impl Beside {
         (more || half(true, left) || half(false, right)).then(|| Misfit { fitting: self.fitting(format) })
     }
 
-    /// The format with what stands beside it.
     fn fitting(&self, format: &ClockFormat) -> Option<String> {
         let [left, right] = &self.sides;
         let own = format.cells().iter().filter_map(|cell| match cell {

@@ -74,7 +74,6 @@ impl Bank {
         }
     }
 
-    /// What this look of a cell is.
     pub(in crate::clock) fn judge(&self, look: &Look) -> Verdict {
         let mut nearest: [Option<(f32, usize)>; 10] = [None; 10];
         for (k, glyph) in self.glyphs.iter().enumerate() {
@@ -122,7 +121,6 @@ impl Bank {
         glyph.seen = (glyph.seen + 1.0).min(MOST_SEEN);
     }
 
-    /// The cell that a glyph was seen in.
     pub(in crate::clock) fn cell(&self, glyph: usize) -> usize {
         self.glyphs[glyph].cell
     }

@@ -152,7 +152,6 @@ impl Cells {
         self.line = self.line.map(|edge| edge - top as f32);
     }
 
-    /// The box of the ink in a cell; none where there is none.
     pub(in crate::clock) fn ink(&self, gray: &Gray, cut: Cut) -> Option<Cut> {
         let limit = 0.5 * (self.levels.background + self.levels.ink);
         let light = self.levels.ink > self.levels.background;

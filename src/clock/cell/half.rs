@@ -32,7 +32,6 @@ const NO_DIGIT: f64 = 0.5;
 /// A word that is AM or PM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::clock) enum Word {
-    /// Which of them.
     Half(Half),
     /// One of them, for an M follows another letter.
     Unclear,

@@ -26,7 +26,6 @@ pub(in crate::clock) struct Cut {
 }
 
 impl Cut {
-    /// The box of a piece of ink.
     pub(in crate::clock) fn around(ink: &Piece) -> Self {
         Self { left: ink.left as f32, top: ink.top as f32, width: ink.width() as f32, height: ink.height() as f32 }
     }

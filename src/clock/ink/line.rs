@@ -33,7 +33,6 @@ fn merged(a: &Piece, b: &Piece) -> Piece {
     }
 }
 
-/// The lines that these pieces form.
 pub(in crate::clock) fn lines(pieces: &[Piece]) -> Vec<Line> {
     let mut pieces: Vec<Piece> = pieces.iter().filter(|piece| piece.area > SPECK).copied().collect();
     pieces.sort_by_key(|piece| (piece.top, piece.left));

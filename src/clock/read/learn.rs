@@ -38,7 +38,6 @@ pub(super) struct Learnt {
     pub(super) misfit: Option<Misfit>,
 }
 
-/// A row of characters in one crop.
 struct RowInCrop {
     crop: usize,
     /// Which threshold, and whether ink is lighter.
@@ -47,7 +46,6 @@ struct RowInCrop {
     levels: Levels,
 }
 
-/// So many crops are searched for rows.
 const SEARCHED: usize = 11;
 /// Every third of them first; its multiples hit each of a number of crops that it does not divide.
 const TURNS: usize = 3;
@@ -293,7 +291,6 @@ fn noise(looks: &[Vec<Look>]) -> f32 {
     median_of(steps).unwrap_or(0.0)
 }
 
-/// The mean of crops of one size.
 fn mean(crops: &[Gray]) -> Gray {
     let mut sum = crops[0].clone();
     for crop in &crops[1..] {

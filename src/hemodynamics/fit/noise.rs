@@ -23,7 +23,6 @@ pub(super) type Noises = Vec<Vec<f64>>;
 /// Subject and photodiode, sum of squares, values, and least and largest voltage.
 type Misses<'a> = ((&'a str, &'a str), f64, usize, [f64; 2]);
 
-/// The noise given for a trace.
 fn given(options: &FitOptions, name: &str) -> Option<f64> {
     options.noise.iter().find(|(own, _)| own == name).map(|own| own.1)
 }

@@ -4,11 +4,9 @@ use std::path::PathBuf;
 
 use crate::job::{Foreseen, Role, Takes, Work};
 
-/// The role of a parameter file.
 pub(in crate::hemodynamics) const PARAMS: Role =
     Role::new("params", Takes::Optional, "parameters, as fit writes them [default: the thesis' table]");
 
-/// The file of a role, where the task has one.
 pub(in crate::hemodynamics) fn of_task(role: &str, work: &Work<'_>) -> Option<PathBuf> {
     work.one(role).map(|at| at.path.clone())
 }

@@ -8,7 +8,6 @@ use super::places::Place;
 use crate::layout::error::LayoutError;
 use crate::layout::options::LayoutOptions;
 
-/// What was read.
 #[derive(Debug, Clone)]
 pub(in crate::layout) struct Given {
     pub(in crate::layout) criterion: Criterion,

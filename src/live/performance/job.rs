@@ -285,7 +285,6 @@ fn counted_on(trials: &Trials) -> Option<String> {
 /// An operator who lacks so many of the last trials stopped; one that lacks may have been lost (assumed; where 5 % of
 /// all rows are lost by chance, 3 of 40 generated studies of 100 rows have such an operator).
 const ENDED_EARLY: u32 = 2;
-/// So many are named.
 const MOST_NAMED: usize = 10;
 
 /// Operators who did not go on as long as others did with a method: those who stop are seldom like those who stay.

@@ -8,7 +8,6 @@ use crate::files::Places;
 use crate::live::error::LiveError;
 use crate::table::{Column, TableWriter, Value};
 
-/// The table of means.
 pub(super) const MEANS: &str = "table.csv";
 /// The table of rows.
 pub(super) const ROWS: &str = "rows.csv";

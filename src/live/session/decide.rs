@@ -45,7 +45,6 @@ pub(super) struct Plan {
 /// What is done with a finger's rows.
 pub(super) struct Decide {
     finger: Option<(String, usize)>,
-    /// The stream's columns.
     pub(super) columns: StreamColumns,
     pub(super) samples: Option<Samples>,
     pub(super) answers: Option<Answers>,
@@ -67,7 +66,6 @@ pub(super) enum Kept<'a> {
     Usual,
     /// At a time, with further cells.
     At(f64, &'a str),
-    /// It is not.
     Not,
 }
 

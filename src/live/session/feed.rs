@@ -150,7 +150,6 @@ pub(super) fn is_away(condition: Condition) -> bool {
     matches!(condition, Condition::Lost | Condition::Reconnecting)
 }
 
-/// Spoilt rows of one kind, in words.
 pub(super) fn spoilt_words(rows: &SpoiltRows) -> String {
     let SpoiltRows { kind, count, line, text } = rows;
     let others = if *count > 1 { format!(", and {} more", count - 1) } else { String::new() };

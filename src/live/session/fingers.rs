@@ -10,7 +10,6 @@ use crate::live::error::LiveError;
 use crate::live::options::{SessionFiles, StreamOptions};
 use crate::live::switch::read_switch;
 
-/// A finger of a session.
 pub(super) struct Finger<'a> {
     /// Its name and its place among the fingers; none where the one source has no name.
     pub(super) name: Option<String>,

@@ -142,7 +142,6 @@ impl Rows for TableRows {
     }
 }
 
-/// How a source is named in messages.
 pub(super) fn named(source: &Address) -> String {
     match &source.place {
         Place::Stdin => "standard input".to_owned(),
@@ -200,7 +199,6 @@ impl PhantomRows {
     }
 }
 
-/// The options of a generated log, and the settings as a table.
 fn log_options(protocol: Option<&str>, settings: &[(String, String)]) -> Result<(LogOptions, Table), String> {
     let mut table = Table::new();
     table.extend(protocol.map(|kind| ("protocol".to_owned(), kind.into())));

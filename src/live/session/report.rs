@@ -94,7 +94,6 @@ pub struct Latency {
     pub wake_up: Option<LatencySummary>,
 }
 
-/// A session that has ended.
 pub(super) struct Ended<'a> {
     pub(super) job: &'static str,
     pub(super) stages: Stages,

@@ -38,7 +38,6 @@ pub(super) struct Recording {
     pub(super) trials: Vec<Trial>,
     pub(super) gated: bool,
     pub(super) angles_without_gate: bool,
-    /// Rows without a time.
     pub(super) without_time: usize,
     /// Rows of no trial.
     pub(super) without_trial: usize,

@@ -19,7 +19,6 @@ const SUBJECT: &str = "subject";
 /// More fingers are something else.
 const MOST_FINGERS: usize = 20;
 
-/// What a gate says of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Gate {
     Touch,
@@ -76,7 +75,6 @@ fn is_force(name: &str) -> bool {
     name == FORCE || finger_of(name, FORCE).is_some()
 }
 
-/// The finger of `FINGER.column`.
 fn finger_of<'a>(name: &'a str, column: &str) -> Option<&'a str> {
     name.strip_suffix(column)?.strip_suffix('.').filter(|finger| !finger.is_empty())
 }

@@ -40,7 +40,6 @@ pub struct SwitchInputs {
 pub(crate) struct Traces {
     /// What those that could be read are called.
     pub(crate) recordings: Vec<String>,
-    /// One of each of them.
     pub(crate) traces: Vec<Trace>,
     /// Whether one of them says when the LED was on.
     pub(crate) led: bool,

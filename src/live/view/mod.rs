@@ -126,7 +126,6 @@ impl View {
         self.tell(News::Finger(place, Finger { name: name.map(str::to_owned), photodiodes, answers, has_switch }));
     }
 
-    /// A sample of a finger was answered.
     pub(super) fn sample(&mut self, finger: usize, seen: &Seen<'_>) {
         let place = (seen.time_s / BIN_S).floor();
         let Some(open) = self.open.get_mut(finger).filter(|_| place.is_finite()) else { return };

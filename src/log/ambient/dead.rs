@@ -87,7 +87,6 @@ struct Stretch {
 }
 
 impl Still {
-    /// Of so many channels.
     pub(crate) fn new(channels: usize) -> Self {
         let (last, run) = (vec![f64::NAN; channels], Stretch::default());
         Self { last, run, is_long: false, usual: [0; 2], stretches: 0, longest: None }

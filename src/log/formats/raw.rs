@@ -81,7 +81,6 @@ impl Raw {
         channel.map(|channel| &mut channel.values)
     }
 
-    /// The place of a row, with the file.
     pub(in crate::log) fn place(&self, row: usize) -> String {
         place(&self.path, self.word, self.places[row])
     }

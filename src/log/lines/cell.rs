@@ -7,7 +7,6 @@ use lunula_live::wire::{self, is_missing, with_decimal_comma};
 
 use crate::words::decimal_comma;
 
-/// Reads cells as numbers.
 #[derive(Debug, Clone, Default)]
 pub(in crate::log) struct Numbers {
     comma_allowed: bool,

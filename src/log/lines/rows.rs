@@ -128,7 +128,6 @@ impl Rows<'_> {
         row.iter().zip(&self.layout.names).all(|(cell, name)| bare(cell) == name.as_bytes())
     }
 
-    /// The line of the row that is read next.
     fn line_of_next(&self, rows: &csv::Reader<&[u8]>) -> u64 {
         self.layout.lines_before + rows.position().line() + text::lines_to_row(self.text, self.at(rows))
     }

@@ -246,7 +246,6 @@ fn place_of(name: &str, names: &[String]) -> Result<usize, String> {
     Err(format!("has no column `{name}`{help}; its columns are {}", listed(names)))
 }
 
-/// The columns' names, for a message.
 fn listed(names: &[String]) -> String {
     const MOST: usize = 40;
     let mut all: Vec<String> = names.iter().enumerate().take(MOST).map(|(k, name)| shown(name, k)).collect();

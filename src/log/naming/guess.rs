@@ -87,7 +87,6 @@ pub(in crate::log) fn unit_of_name(name: &str) -> Option<TimeUnit> {
     (words.len() > 1 || words[0].len() > 2).then_some(unit)
 }
 
-/// The words without a unit at their end.
 fn without<'a>(words: &'a [&'a str], units: &[&str]) -> &'a [&'a str] {
     match words.split_last() {
         Some((last, rest)) if units.contains(last) => rest,

@@ -25,7 +25,6 @@ const LEAST_KNOWN: f64 = 0.6;
 /// Steps nearer than this are one, seconds.
 const APART_S: f64 = 0.6;
 
-/// A press.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
     pub(super) press_s: f64,

@@ -69,7 +69,6 @@ fn figures(course: &str, errors: &[[(f64, bool); 2]], t90_s: f64) -> ([f64; 2], 
     ([onset_s, t90], [onset_held, t90_held])
 }
 
-/// The median of the sizes of the errors.
 fn median(errors: &[[(f64, bool); 2]], k: usize) -> f64 {
     let mut all: Vec<f64> = errors.iter().map(|one| one[k].0.abs()).collect();
     all.sort_by(f64::total_cmp);

@@ -71,7 +71,6 @@ impl Colours {
         Some(Self { holds_near: colours.holds(corners), ..colours })
     }
 
-    /// Of a part of a frame.
     pub(in crate::nailvideo) fn of_part(frame: &Frame<'_>, planes: Planes, part: Part) -> Self {
         let Planes { turn, matrix, site } = planes;
         let luma = Grid::of_luma(&samples(frame.luma, turn.quarters()), part, 1);

@@ -41,7 +41,6 @@ pub(super) fn covered_by<'a>(
     covered(|cell| fits(cell).is_some_and(|change| !TIGHT.is_strange(change, light, is_grey)))
 }
 
-/// How many points of a group are covered.
 pub(super) fn points_covered(covered: &Covered, group: &Group) -> usize {
     group.points.iter().filter(|&&point| covered[cell_at(point)]).count()
 }

@@ -121,7 +121,6 @@ pub(in crate::nailvideo) struct Sampler {
     noise: Noise,
     /// What is covered in the frame that was sampled last, where something lies over the nail.
     pub(in crate::nailvideo) covered: Option<Covered>,
-    /// Frames that were sampled.
     frames: usize,
 }
 
@@ -151,7 +150,6 @@ impl Cells {
         Self { groups, first }
     }
 
-    /// What has changed since, group by group.
     fn changes(&self, colours: &Colours, frame_from_nail: &Affine) -> impl Iterator<Item = (&Group, Option<[f64; 3]>)> {
         self.groups.iter().zip(&self.first).map(|(group, first)| {
             let change = logs(colours.mean(group, frame_from_nail)).zip(*first);
@@ -338,7 +336,6 @@ impl Sampler {
     }
 }
 
-/// The mean colour over a region.
 fn region_mean(region: &Region, colours: &Colours, frame_from_nail: &Affine) -> [f64; 3] {
     mean_of(region.groups.iter().map(|group| (group, colours.mean(group, frame_from_nail))))
 }

@@ -25,7 +25,6 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// Of so many discs.
     pub(super) fn new(discs: usize) -> Self {
         Self { frames: 0.0, mean: DVector::zeros(discs), sums: DMatrix::zeros(discs, discs) }
     }

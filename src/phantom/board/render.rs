@@ -38,7 +38,6 @@ pub struct Picture {
 pub struct Scene {
     pub(super) options: BoardOptions,
     pub(super) mapping: Mapping,
-    /// One for each view.
     pub(super) views: Vec<View>,
     /// The board in the finger's plane.
     pub(super) plane: Option<View>,
@@ -193,7 +192,6 @@ impl Grid {
         self.from_ray.map(|row| row[0] * x + row[1] * y + row[2])
     }
 
-    /// What of the board a ray meets.
     fn place(&self, ray: [f64; 2]) -> Place {
         let [column, row, divisor] = self.parts(ray);
         let (column, row) = ((column / divisor).floor() as i64, (row / divisor).floor() as i64);

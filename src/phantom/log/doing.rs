@@ -67,7 +67,6 @@ impl Doing {
         Self::until(options, options.seconds, None)
     }
 
-    /// What it does at `t_s`.
     pub(in crate::phantom) fn touch(&mut self, t_s: f64) -> Touch {
         let late_s = self.follow.as_ref().map_or(0.0, |follow| follow.late_s(t_s));
         let (mut touch, straight) = self.prompted(t_s - late_s);

@@ -104,7 +104,6 @@ pub(super) struct Samples {
     /// The log's clock at the first sample, seconds.
     first_s: f64,
     next: usize,
-    /// How many there are.
     count: usize,
 }
 

@@ -12,7 +12,6 @@ fn says_contact(options: &LogOptions) -> bool {
     options.contact || options.contacts().is_some()
 }
 
-/// The columns of the rows' truth.
 pub(super) fn true_columns(options: &LogOptions) -> Vec<Column> {
     let mut columns = vec![Column::integer("sample"), Column::number("time_s"), Column::number("log_s")];
     columns.push(Column::integer("led"));
@@ -25,7 +24,6 @@ pub(super) fn true_columns(options: &LogOptions) -> Vec<Column> {
     columns
 }
 
-/// What is true of a row in them.
 pub(super) fn true_cells(options: &LogOptions, row: &Row) -> Vec<Value<'static>> {
     let mut cells = vec![Value::Integer(row.sample as i64), Value::Number(row.scene_s), Value::Number(row.log_s)];
     cells.push(Value::Integer(row.lit.into()));

@@ -217,7 +217,6 @@ impl Contacts {
     /// The default mean pause, seconds.
     pub const PAUSE_S: f64 = 3.0;
 
-    /// The contacts of the block of time `block`.
     fn block(&self, block: u32) -> Vec<Contact> {
         if self.pause_s <= 0.0 || !self.pause_s.is_finite() {
             return Vec::new();

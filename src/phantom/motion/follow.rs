@@ -32,7 +32,6 @@ impl Follow {
         (share > 0.0).then(|| Self { size: share / Wave::RMS, late: wave(1), errors: [2, 3, 4, 5].map(wave) })
     }
 
-    /// How late it is at `t_s`, seconds.
     pub(in crate::phantom) fn late_s(&self, t_s: f64) -> f64 {
         LATE_S * (1.0 + LATE_SWING * self.late.at(t_s))
     }

@@ -52,13 +52,11 @@ pub(super) enum Held<'a> {
 }
 
 impl Cover {
-    /// Rod number `index` of the options.
     pub(super) fn rod(options: &NailVideoOptions, scene: &NailScene, index: usize) -> Self {
         let form = |_, _| Form::Rod { half_px: HALF_WIDTHS * scene.width_px() };
         Self::new(options, scene, (KIND_ROD, index), options.rod[index], [0.1..0.7, -0.3..0.5], form)
     }
 
-    /// Finger number `index` of the options.
     pub(super) fn finger(options: &NailVideoOptions, scene: &NailScene, index: usize) -> Self {
         let form = |end_px: [f64; 2], from: [f64; 2]| {
             let mut subject = person(options.subject.wrapping_add(OTHER).wrapping_add(index as u32));

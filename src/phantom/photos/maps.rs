@@ -21,7 +21,6 @@ impl ExactMaps {
         Self { count: Array2::zeros(shape), mean: Array2::zeros(shape), squares: Array2::zeros(shape) }
     }
 
-    /// Adds one normalized picture.
     pub(super) fn add(&mut self, picture: &Array2<f32>) {
         Zip::from(&mut self.count).and(&mut self.mean).and(&mut self.squares).and(picture).for_each(
             |count, mean, squares, &value| {

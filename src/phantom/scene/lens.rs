@@ -52,7 +52,6 @@ impl Oblique {
     }
 }
 
-/// An oblique plane at its distance.
 #[derive(Debug, Clone, PartialEq)]
 struct Plane {
     axes: [[f64; 3]; 3],

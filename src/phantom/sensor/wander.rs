@@ -10,7 +10,6 @@ use crate::phantom::nail::numbers;
 const KIND_WANDER: u32 = 25;
 /// How long creep takes, seconds.
 const CREEP_S: f64 = 600.0;
-/// Rates of the wander, hertz.
 const RATES_HZ: std::ops::Range<f64> = 1.0 / 600.0..1.0 / 60.0;
 
 /// Drift of each photodiode: size (creep (1 - exp(-t / 600 s)) + wander / 2), t from the log's beginning and no less

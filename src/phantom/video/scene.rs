@@ -138,7 +138,6 @@ impl Scene {
         (-0.5..self.options.width as f64 - 0.5).contains(&x) && (-0.5..self.options.height as f64 - 0.5).contains(&y)
     }
 
-    /// Where everything is at `t_s`.
     pub(super) fn moment(&self, t_s: f64) -> Moment {
         let posture = self.options.finger.posture(self.options.trajectory.angles_rad(t_s), self.shift_px(t_s));
         Moment {

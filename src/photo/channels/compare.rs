@@ -13,7 +13,6 @@ use crate::photo::set::Photo;
 
 /// Share of a zone that a photograph has to show (assumed).
 const LEAST_SEEN: f64 = 0.5;
-/// Which channels are compared with each other.
 const PAIRS: [[usize; 2]; 3] = [[1, 0], [1, 2], [0, 2]];
 
 /// A colour photograph with at least one nail that is used.

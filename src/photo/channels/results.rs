@@ -9,7 +9,6 @@ use crate::table::{TextColumn, csv_bytes};
 const TABLE: &str = "channels.csv";
 const PNG: &str = "figures/channels.png";
 const SVG: &str = "figures/channels.svg";
-/// The columns of `channels.csv`.
 const COLUMNS: [TextColumn<ChannelRow>; 14] = [
     ("pose", |row| row.pose.clone()),
     ("tone", |row| row.tone.clone().unwrap_or_default()),

@@ -42,13 +42,9 @@ pub struct Normalized {
 /// Of the levels of a normalized picture that are seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct Survey {
-    /// How many.
     pub(crate) seen: u64,
-    /// Their sum.
     pub(crate) sum: u64,
-    /// That of their squares.
     pub(crate) squares: u64,
-    /// The greatest.
     pub(crate) greatest: u16,
     /// How many are there, to a tenth of a step of 8 bits.
     pub(crate) at_greatest: u64,

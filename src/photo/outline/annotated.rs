@@ -277,7 +277,6 @@ fn loose_axes(file: &LabelMe, found: &[Labelled]) -> Vec<(usize, usize)> {
     (0..file.shapes.len()).filter(is_loose).filter_map(|line| Some((line, nearest(line)?))).collect()
 }
 
-/// A line labelled `axis`.
 struct Line {
     place: usize,
     group: Option<i64>,

@@ -16,7 +16,6 @@ use crate::photo::set::{Photo, PhotoSet};
 use crate::photograph::Photograph;
 use crate::table::csv_bytes;
 
-/// The detected outlines of a photograph.
 #[derive(Debug, Clone)]
 pub(in crate::photo) struct DetectedOutline {
     /// Index of its photograph in the set.

@@ -61,7 +61,6 @@ pub(in crate::photo) struct DrawnSheet {
 }
 
 impl DrawnSheet {
-    /// Draws a sheet and writes it as the result `name`.
     pub(super) fn new(sheet: &Sheet, name: &str, staging: &Staging) -> Result<Self, WriteError> {
         let png = sheet.png().map_err(|why| staging.refused(name, why))?;
         staging.write(name, &png)?;

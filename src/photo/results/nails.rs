@@ -128,7 +128,6 @@ const SUBJECT: usize = 2;
 const POSE: usize = 3;
 const FRAME: Range<usize> = 6..11;
 const USED: usize = 11;
-/// Nails on a sheet of thumbnails.
 const NAILS_PER_SHEET: usize = 130;
 const NAILS_PER_ROW: usize = 13;
 
@@ -217,7 +216,6 @@ impl NailTable {
         staging.write(NAME, &csv_bytes(nail_columns(), &self.rows).map_err(|why| staging.refused(NAME, why))?)
     }
 
-    /// Draws the sheets of all nails and writes them.
     pub(in crate::photo) fn draw_sheets(&self, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
         let draw = |NailSheet { pose, number, sheet }: &NailSheet| {
             DrawnSheet::new(sheet, &format!("figures/{pose}-nails-{number}.png"), staging)

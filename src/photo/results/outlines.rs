@@ -63,7 +63,6 @@ pub(in crate::photo) struct DrawnPhotograph {
     counts: [usize; 3],
 }
 
-/// An outline to be drawn.
 struct Mark<'a> {
     outline: &'a Outline,
     axis: Option<Axis>,

@@ -466,7 +466,6 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     report
 }
 
-/// Of `lunula photos merge`.
 pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
     let poses = pose_counts(partials);
     let notes = one_subject(&poses).into_iter().collect();

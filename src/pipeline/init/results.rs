@@ -62,7 +62,6 @@ pub(super) struct JobResults {
 }
 
 impl JobResults {
-    /// The results in a folder that has these `names`.
     pub(super) fn of<'a>(folder: &Path, names: impl Iterator<Item = &'a str>) -> Self {
         let mut results = Self::default();
         for name in names.filter(|name| name.ends_with("run.json")) {

@@ -34,7 +34,6 @@ pub(in crate::pipeline) struct InputItems {
 }
 
 impl InputItems {
-    /// The items of a column, or the files.
     pub(in crate::pipeline) fn of(&self, column: Option<usize>) -> Relation {
         self.relations.get(column.unwrap_or(0)).cloned().unwrap_or_default()
     }

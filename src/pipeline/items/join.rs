@@ -19,11 +19,9 @@ pub(in crate::pipeline) struct JoinedRows {
 /// Items of a relation for which another has none.
 #[derive(Debug, PartialEq, Eq)]
 pub(in crate::pipeline) struct Unjoined {
-    /// Whose items.
     pub(in crate::pipeline) of: usize,
     /// Which relation has none.
     pub(in crate::pipeline) lacks: usize,
-    /// Their keys.
     pub(in crate::pipeline) keys: Vec<Keys>,
 }
 
@@ -84,7 +82,6 @@ pub(in crate::pipeline) struct Index<'a> {
 }
 
 impl<'a> Index<'a> {
-    /// An index for keys of these names.
     pub(in crate::pipeline) fn new(relation: &'a Relation, names: &[String]) -> Self {
         let shared: Vec<&str> = relation.names.iter().filter(|name| names.contains(name)).map(String::as_str).collect();
         let mut by_values: HashMap<Vec<&str>, Vec<usize>> = HashMap::new();

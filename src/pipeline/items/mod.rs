@@ -112,7 +112,6 @@ impl<'a> World<'a> {
 }
 
 impl Relation {
-    /// The items for which a filter holds.
     pub(super) fn only(mut self, filter: &Filter) -> Self {
         self.items.retain(|item| holds(filter, &item.columns));
         self.lacking.retain(|row| holds(filter, &row.columns));

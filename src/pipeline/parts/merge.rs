@@ -242,7 +242,6 @@ impl Parts {
     }
 }
 
-/// In what a part's mark differs from a pipeline.
 fn difference(mark: &PartMark, pipeline: &PipelineMark, lunula: &str) -> Option<String> {
     if mark.lunula != lunula {
         return Some(format!("one by lunula {}, one by {lunula}", mark.lunula));

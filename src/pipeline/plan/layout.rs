@@ -369,7 +369,6 @@ fn nothing_to_do(spec: &Spec, layout: &Layout<'_>, faults: &mut Vec<Fault>) {
     }
 }
 
-/// Why a stage has no tasks.
 fn why(spec: &Spec, layout: &Layout<'_>, stage: usize) -> String {
     let spec_stage = &spec.stages[stage];
     for (role, references) in spec_stage.kind.roles.iter().zip(&spec_stage.roles) {

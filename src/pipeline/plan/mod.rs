@@ -50,7 +50,6 @@ pub(super) struct Laid {
     pub(super) job: &'static str,
     pub(super) line: usize,
     pub(super) wanted: bool,
-    /// Which of the plan's tasks.
     pub(super) tasks: Vec<usize>,
     /// What has no task, and why.
     pub(super) left_out: Vec<Missing>,

@@ -340,7 +340,6 @@ fn bench_of(rows: &[&str]) -> Bench {
     bench_with("sessions.csv", &format!("subject,session,kind,video,log\n{}\n", rows.join("\n")))
 }
 
-/// What the plan warns of then.
 fn warned(rows: &[&str], pipeline: &str) -> Vec<String> {
     bench_of(rows).plan(pipeline).warnings
 }

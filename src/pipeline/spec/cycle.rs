@@ -3,7 +3,6 @@
 use super::{From, Header, StageSpec};
 use crate::toml_file::Findings;
 
-/// The stages that a stage works on.
 pub(super) fn works_on(stage: &StageSpec) -> impl Iterator<Item = usize> {
     stage.roles.iter().flatten().filter_map(|reference| match reference.from {
         From::Stage(at, _) => Some(at),

@@ -133,7 +133,6 @@ fn nothing() -> Arc<dyn Maker> {
     Arc::new(|_: &Work<'_>| Ok(Made::default()))
 }
 
-/// A folder with these files.
 pub(in crate::pipeline) fn folder_of(files: &[(&str, &str)]) -> tempfile::TempDir {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, text) in files {

@@ -57,7 +57,6 @@ pub(crate) struct Angles {
     layout: Layout,
     view: View,
     needed: Vec<bool>,
-    /// The last known angle of each joint.
     last_rad: Vec<Option<f64>>,
     metric: Metric,
     lengths: Lengths,

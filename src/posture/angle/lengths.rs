@@ -33,7 +33,6 @@ pub(super) struct Lengths {
     frames: u64,
 }
 
-/// Of one segment.
 #[derive(Debug, Clone, Default)]
 struct Segment {
     /// All its frames.
@@ -124,7 +123,6 @@ impl Lengths {
         run.sums.add(ends_px);
     }
 
-    /// Goes on to the next frame.
     pub(super) fn next_frame(&mut self) {
         self.frames += 1;
     }

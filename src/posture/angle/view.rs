@@ -110,7 +110,6 @@ impl View {
         }))
     }
 
-    /// The centre on the shown picture.
     #[must_use]
     pub(crate) fn shown(&self, centre: &Centre) -> Spot {
         let stored = Spot { at_px: centre.at_px, covariance_px2: centre.covariance_px2 };

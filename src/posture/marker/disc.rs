@@ -106,7 +106,6 @@ impl Sums {
     }
 }
 
-/// The sums of a window around `shape`.
 pub(super) fn sums(view: &View<'_>, shape: &DiscShape, ground: &Ground, window: Window, row: &mut Vec<f32>) -> Sums {
     let Window { reach_px, doubt, every } = window;
     let plane = &view.plane;

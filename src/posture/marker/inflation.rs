@@ -114,7 +114,6 @@ impl Inflation {
         }
     }
 
-    /// The factor of each marker.
     pub(crate) fn factors(&self) -> Vec<f64> {
         let markers = self.last.len();
         let trembling = self.trembling();

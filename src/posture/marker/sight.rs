@@ -1,6 +1,5 @@
 //! What one frame shows of one marker.
 
-/// A marker's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Centre {
     /// Column and row in the stored picture.
@@ -21,7 +20,6 @@ impl Centre {
     }
 }
 
-/// Why a marker has no centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Loss {
     /// Nothing of its colour where it can be.
@@ -39,7 +37,6 @@ pub(crate) enum Loss {
 /// A marker in a frame: seen or not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Sight {
-    /// Where it is.
     Seen(Centre),
     /// Why it is not seen.
     Lost(Loss),

@@ -150,7 +150,6 @@ pub struct SearchReport {
 #[derive(Debug, Clone, Default)]
 pub(in crate::posture) struct MarkerSums {
     seen: u64,
-    /// The first frame that shows it.
     pub(in crate::posture) first_frame: Option<u64>,
     lost: [u64; LOSSES.len()],
     radius_px: f64,

@@ -29,14 +29,12 @@ const TIME_DECIMALS: usize = 6;
 const CLOCK_SD_DECIMALS: usize = 9;
 /// Decimals of an angle in degrees: a hundredth of the least standard error seen.
 const ANGLE_DECIMALS: usize = 5;
-/// Decimals of a place in pixels.
 const PLACE_DECIMALS: usize = 4;
 
 /// What one frame gave.
 pub(in crate::posture) struct Row<'a> {
     /// The frame's place.
     pub(in crate::posture) index: u64,
-    /// The frame's time.
     pub(in crate::posture) time_s: f64,
     /// Its planes; none where it could not be decoded.
     pub(in crate::posture) frame: Option<&'a Frame<'a>>,

@@ -74,7 +74,6 @@ fn one_marker_is_a_file_without_segments() {
     assert!(layout.markers[0].name.starts_with("pink"), "{text}");
 }
 
-/// The suggestion from frames of these stages.
 fn suggested(stages: &[Stage]) -> Result<String, SuggestError> {
     let info = stages[0].info();
     let mut suggester = Suggester::new(&info);

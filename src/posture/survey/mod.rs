@@ -47,7 +47,6 @@ pub(crate) struct Start {
     pub(crate) at_px: [f64; 2],
     /// How far it moved to the next frame.
     pub(crate) velocity_px: [f64; 2],
-    /// How it looks.
     pub(crate) look: Look,
     /// How it looks as a blot, where it was taken for a disc.
     pub(crate) as_blot: Option<Look>,
@@ -183,7 +182,6 @@ impl<'a> Surveyor<'a> {
         }
     }
 
-    /// Looks at the next frame.
     pub(crate) fn look(&mut self, frame: &Frame<'_>) -> Progress {
         let first = self.frames == 0;
         self.frames += 1;

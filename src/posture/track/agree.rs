@@ -26,7 +26,6 @@ impl Rod {
         Some(distance(a?, b?))
     }
 
-    /// Its other end.
     pub(super) fn other(&self, end: usize) -> usize {
         if self.ends[0] == end { self.ends[1] } else { self.ends[0] }
     }

@@ -58,7 +58,6 @@ pub(crate) struct Effort {
     pub(crate) near_searches: u64,
     /// Searches where lost markers can be.
     pub(crate) wide_searches: u64,
-    /// Searches of whole frames.
     pub(crate) whole_searches: u64,
     /// Samples looked at in all these, as a share of the luma samples of all frames.
     pub(crate) share_searched: f64,

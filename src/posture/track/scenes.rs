@@ -52,7 +52,6 @@ pub(in crate::posture) struct Film<'a> {
 }
 
 impl Film<'_> {
-    /// Surveys, tracks and counts.
     pub(in crate::posture) fn run(&self) -> Result<Tally, SurveyError> {
         let mut surveyor = Surveyor::new(self.layout, &self.info);
         for (k, picture) in self.pictures.iter().enumerate() {

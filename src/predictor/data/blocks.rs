@@ -18,7 +18,6 @@ use ndarray::{Array2, Axis};
 
 use super::columns::cell;
 
-/// Blocks along each side.
 const SIDE: usize = 4;
 /// The share of each recording's rows in which a cell on the nail is known, at least (assumed).
 const KNOWN: f64 = 0.5;
@@ -38,7 +37,6 @@ fn along(k: usize, of: usize) -> Option<usize> {
 /// Blocks of a dataset.
 pub(super) struct Blocks {
     pub(super) data: Dataset,
-    /// Which rows they are.
     rows: Vec<usize>,
     /// Of each of [`TURNED`], which block comes in each one's place.
     pub(super) orders: [Vec<usize>; 3],

@@ -97,7 +97,6 @@ pub(crate) fn missing(name: &str, names: &[String]) -> String {
     format!("has no column `{name}`{help} {}", listed(names, MOST))
 }
 
-/// The columns there are.
 pub(super) fn listed(names: &[String], most: usize) -> String {
     const LONGEST: usize = 40;
     let shown = |name: &String| name.chars().take(LONGEST).flat_map(char::escape_debug).collect::<String>();

@@ -329,7 +329,6 @@ fn twice(data: &Dataset) -> Vec<String> {
     said
 }
 
-/// Why no row is left.
 fn why_none(files: &[FileRows], sources: &[Source], targets: &[String]) -> String {
     let sum = |of: fn(&FileRows) -> usize| files.iter().map(of).sum::<usize>();
     let all = sum(|f| f.rows);

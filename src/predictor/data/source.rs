@@ -270,7 +270,6 @@ impl NumberColumn {
     }
 }
 
-/// The error of a cell that is no finite number.
 fn bad_cell(table: &Table, row: usize, name: &str) -> Result<TableError, TableError> {
     let mut shown = String::new();
     table.each_cell(name, |at, cell| {

@@ -371,7 +371,6 @@ fn columns_named_twice_are_told_with_where() {
     assert!(dead.warnings[0].contains("P1 is 1e-300 V in all 2 rows"), "{:?}", dead.warnings);
 }
 
-/// What a log calls its columns.
 fn called(columns: &str) -> LogReading {
     LogReading { columns: Columns::parse(columns).unwrap(), ..LogReading::default() }
 }

@@ -45,7 +45,6 @@ fn unit(column: &str) -> &'static str {
     }
 }
 
-/// A number with three digits.
 fn three_digits(value: f64) -> String {
     let size = value.abs();
     let text = if size == 0.0 || !size.is_finite() {

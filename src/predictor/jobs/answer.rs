@@ -40,7 +40,6 @@ struct Voice {
     predictor: Predictor,
     /// Where its inputs are in a row.
     places: Vec<usize>,
-    /// Where its first target is in an answer.
     first: usize,
     buffer: Option<LagStream>,
     row: Vec<f64>,

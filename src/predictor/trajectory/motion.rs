@@ -26,7 +26,6 @@ pub(super) enum Path {
 }
 
 impl Motion {
-    /// The motion of checked options.
     pub(super) fn new(options: &TrajectoryOptions) -> Result<Self, ForceSpaceFault> {
         let force = |spiral: Option<Spiral>, hz: f64, seed: u64| {
             let space = ForceSpace::new(options.fz_max_n, options.mu)?;

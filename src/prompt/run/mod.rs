@@ -47,7 +47,6 @@ pub(crate) enum Key {
     Hidden,
 }
 
-/// How a run is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Phase {
     /// For the person, who has read the step's text.
@@ -271,7 +270,6 @@ impl Run {
         }
     }
 
-    /// A movement is at its end, at `end_s`.
     fn end_movement(&mut self, end_s: f64, now_s: f64) {
         let unmet = self.unmet();
         if unmet.is_empty() {
@@ -407,7 +405,6 @@ impl Run {
         self.current().is_some_and(|step| step.motion().is_some())
     }
 
-    /// The step that it is at.
     #[must_use]
     pub(crate) fn current(&self) -> Option<&Step> {
         self.protocol.steps.get(self.step)

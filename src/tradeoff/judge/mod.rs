@@ -103,7 +103,6 @@ pub fn judge(
     Ok(Tradeoff { job, rows, curves, refused, peers, wall_s: begun.elapsed().as_secs_f64(), maps: Vec::new() })
 }
 
-/// Whether a row is on a curve.
 pub(in crate::tradeoff) fn is_on(row: &Row, curve: &Verdict) -> bool {
     row.choice == curve.choice && row.error_unit == curve.error_unit
 }

@@ -66,7 +66,6 @@ impl Events {
         Self::Ahead(Ahead { from, thread: Some(thread), cut: None })
     }
 
-    /// The next event.
     pub(in crate::video) fn next(&mut self) -> Told {
         match self {
             Self::Here(reader) => next(reader),

@@ -7,7 +7,6 @@ use ffmpeg::codec::{self, Parameters};
 use ffmpeg::{Packet, format::Pixel, frame};
 use ffmpeg_next as ffmpeg;
 
-/// Tells hidden packets.
 pub(in crate::video) struct HiddenPackets {
     raw: ffmpeg::decoder::Video,
     sample: frame::Video,

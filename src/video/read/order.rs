@@ -48,7 +48,6 @@ impl Order {
         if self.under_way.len() > UNDER_WAY { self.under_way.pop_first() } else { None }
     }
 
-    /// The packet `number` of `group` is damaged.
     pub(in crate::video) fn damage(&mut self, number: u64, group: u64) {
         let first = self.damaged.entry(group).or_insert(number);
         *first = number.min(*first);

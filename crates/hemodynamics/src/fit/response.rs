@@ -31,12 +31,10 @@ pub(super) struct Response {
 }
 
 impl Response {
-    /// The lumen of unit `i` at a sample.
     pub(super) fn lumen(&self, sample: usize, i: usize) -> f64 {
         self.lumens[sample * self.walls + i]
     }
 
-    /// Its derivative along a direction.
     pub(super) fn derivative(&self, sample: usize, direction: usize, i: usize) -> f64 {
         self.derivatives[(sample * self.directions + direction) * self.walls + i]
     }

@@ -59,7 +59,6 @@ pub struct Segment {
     pieces: [Piece; 4],
 }
 
-/// A smooth piece of a load.
 #[derive(Clone)]
 pub(super) enum Piece {
     Constant(f64),

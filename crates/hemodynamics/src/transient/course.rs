@@ -50,7 +50,6 @@ pub(crate) struct Pace {
     pub(crate) fixed_s: Option<f64>,
     pub(crate) longest_s: f64,
     pub(crate) most_evaluations: u64,
-    /// The next step, s.
     pub(crate) next_s: f64,
     /// Size and estimate of the last accepted step; its size 0 where there is none to go by.
     last: [f64; 2],
@@ -106,7 +105,6 @@ impl Pace {
     }
 }
 
-/// What happens where a course begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Begins {
     /// The inputs jump, or the run begins.

@@ -70,7 +70,6 @@ pub struct StreamGap {
 /// A gap has more periods than this, as in logs.
 const GAP_PERIODS: f64 = 5.0;
 
-/// The most gaps that are kept.
 const MOST_GAPS: usize = 100;
 
 /// Finds gaps between rows.

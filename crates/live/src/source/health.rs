@@ -19,7 +19,6 @@ const WINDOW_NS: u64 = 1_000_000_000;
 const SLOW_BELOW: f64 = 0.7;
 const SLOW_UNTIL: f64 = 0.9;
 
-/// The most changes that are kept.
 const MOST_CHANGES: usize = 1000;
 
 /// How a stream is.
@@ -98,7 +97,6 @@ impl Health {
         Some(self.state)
     }
 
-    /// The source was opened again.
     pub(in crate::source) fn opened(&mut self, now_ns: u64) {
         (self.alive_ns, self.window) = (now_ns, (0, now_ns));
     }

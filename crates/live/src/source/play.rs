@@ -23,7 +23,6 @@ pub(in crate::source) struct Waiting {
     pub(in crate::source) lost: u64,
     pub(in crate::source) begins: bool,
     pub(in crate::source) due_ns: u64,
-    /// Rows counted before it.
     pub(in crate::source) before: RowCounts,
 }
 

@@ -35,7 +35,6 @@ pub struct Arrivals {
     step_s: f64,
     rows: u32,
     came: u32,
-    /// The latest time that was given.
     latest_s: f64,
     /// From row to row, and from arrival to arrival.
     pub(crate) period: Period,

@@ -267,7 +267,6 @@ fn pairs_of(places: &[usize]) -> impl Iterator<Item = [usize; 2]> {
     pairs(0..places.len()).map(|pair| pair.map(|k| places[k]))
 }
 
-/// Which targets are forces.
 fn forces(targets: &[String]) -> Vec<usize> {
     (0..targets.len()).filter(|k| targets[*k].ends_with(FORCE)).collect()
 }

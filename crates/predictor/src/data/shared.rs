@@ -168,7 +168,6 @@ fn off_ahead([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2], ahead_s: f6
     Some(Off { voltages, means, labels })
 }
 
-/// The column that is furthest off.
 fn worst(columns: &[Compared]) -> f64 {
     columns.iter().map(Compared::rows).fold(0.0, f64::max)
 }

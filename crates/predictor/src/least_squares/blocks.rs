@@ -57,7 +57,6 @@ pub(super) fn total(sums: &Lanes) -> Long {
     (0..LANES).fold(Long::ZERO, |sum, lane| sum.plus(Long::of(sums.0[lane], sums.1[lane])))
 }
 
-/// A part in the machine's vectors.
 #[inline(always)]
 pub(super) fn vectors<S: Simd>(part: &Part) -> &[S::f64s] {
     S::as_simd_f64s(part).0

@@ -36,7 +36,6 @@ pub(super) struct Factor {
     pub(super) sides: Vec<Column>,
 }
 
-/// Some rows of a column.
 pub(super) fn part(r: &Array2<f64>, rows: Range<usize>, column: usize) -> Column {
     rows.map(|i| r[[i, column]]).collect()
 }

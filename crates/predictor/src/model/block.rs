@@ -165,7 +165,6 @@ impl<K: Kernel> Wide for Batch<'_, K> {
     }
 }
 
-/// A block's values as vectors.
 #[inline(always)]
 pub(super) fn vectors<S: Simd>(lanes: &Lanes) -> &[S::f64s] {
     S::as_simd_f64s(lanes).0

@@ -159,7 +159,6 @@ macro_rules! predicting {
 }
 use predicting;
 
-/// Writes a matrix row by row.
 fn rows<S: Serializer>(matrix: &Array2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(matrix.outer_iter().map(|row| row.to_vec()))
 }

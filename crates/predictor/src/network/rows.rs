@@ -17,9 +17,7 @@ pub(super) type Column = [f64; BLOCK];
 pub(super) struct Rows {
     /// How many count.
     pub(super) rows: usize,
-    /// Inputs of a row.
     pub(super) inputs: usize,
-    /// Targets of a row.
     pub(super) targets: usize,
     /// For each block: ones where a row counts (the bias' input), inputs, targets.
     columns: Vec<Column>,

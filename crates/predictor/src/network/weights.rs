@@ -80,7 +80,6 @@ impl Forward {
     }
 }
 
-/// Adds a part of each column, by its weight.
 #[inline(always)]
 fn add(sums: &mut [f64; LANES], weights: &[f64], columns: &[Column], part: usize) {
     for (weight, column) in weights.iter().zip(columns) {

@@ -9,11 +9,9 @@ const RESIDUALS: [f64; 21] = [
     -2048.0, 2048.0, -2048.0, 2523.0, -2048.0, 2048.0, -2048.0, 759.0,
 ];
 
-/// Standard errors of Wampler3.
 const ERRORS: [f64; 6] =
     [2152.32624678170, 2363.55173469681, 779.343524331583, 101.475507550350, 5.64566512170752, 0.112324854679312];
 
-/// Residual SD of Wampler3.
 const RESIDUAL_SD: f64 = 2360.14502379268;
 
 pub(crate) fn wampler(number: u32) -> Certified {

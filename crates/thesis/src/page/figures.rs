@@ -15,7 +15,6 @@ pub(super) struct Figure {
     pub(super) caption: &'static str,
 }
 
-/// A section of the page.
 pub(super) struct Section {
     /// The name that links go to.
     pub(super) name: &'static str,

@@ -13,7 +13,6 @@ pub(crate) struct Point {
     pub(crate) mean: f64,
     /// The standard deviation over legs; none of fewer than two.
     pub(crate) sd: Option<f64>,
-    /// How many legs.
     pub(crate) legs: usize,
 }
 

@@ -87,7 +87,6 @@ fn gap(curve: &Curve) -> Option<f64> {
     gaps.reduce(f64::max)
 }
 
-/// Mean of what is there.
 pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (n, sum) = values.fold((0.0, 0.0), |(n, sum), value| (n + 1.0, sum + value));
     (n > 0.0).then(|| sum / n)

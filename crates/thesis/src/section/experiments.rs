@@ -23,7 +23,6 @@ const SHOWN: [usize; 2] = [1, 2];
 /// The end of a quick press that its time constants are reported to, s.
 const END_S: f64 = 4.4;
 
-/// A quick press, and its moments.
 #[derive(Debug, Clone)]
 pub(crate) struct QuickPress {
     /// What was recorded; it has times.
@@ -37,7 +36,6 @@ pub(crate) struct QuickPress {
 pub(crate) struct Presses {
     /// Static curves, all over the same forces.
     pub(crate) slow: [Vec<Recorded>; 2],
-    /// Quick presses.
     pub(crate) quick: [Vec<QuickPress>; 2],
 }
 

@@ -23,7 +23,6 @@ const SPREAD: f64 = 0.12;
 const SCALING: (f64, f64) = (0.35, 4.0);
 /// Noise over a signal's own range.
 const NOISE: f64 = 0.01;
-/// Noise of the force, N.
 const FORCE_NOISE_N: f64 = 0.01;
 /// Of a dynamic recording: rows a second, its end, pressing and letting go (s), how long that takes, and the force
 /// held.

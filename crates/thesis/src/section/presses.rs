@@ -33,7 +33,6 @@ pub(crate) struct PressFile<'a> {
     pub(crate) path: &'a Path,
     /// What results call it.
     pub(crate) name: &'a str,
-    /// Whose it is.
     pub(crate) subject: &'a str,
 }
 

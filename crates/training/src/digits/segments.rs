@@ -89,7 +89,6 @@ impl Display {
         }
     }
 
-    /// Which segments a digit lights.
     pub(super) fn lit(&self, digit: usize) -> [bool; 7] {
         let extra = match digit {
             7 if self.variants[0] => "f",

@@ -50,7 +50,6 @@ impl Rows {
     }
 }
 
-/// Is the point within the polygon?
 fn within(points: &[[f64; 2]], p: [f64; 2]) -> bool {
     let mut inside = false;
     for (i, a) in points.iter().enumerate() {

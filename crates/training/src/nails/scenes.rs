@@ -218,7 +218,6 @@ pub(super) fn scenes(count: u32, seed: u64, folder: Option<&Path>, looks: &[Look
     Ok(all)
 }
 
-/// Finger ends of a scene.
 pub(super) fn ends(scene: &Scene, most: usize) -> Vec<(Frame, f64)> {
     finger_ends(&levels(scene), most)
 }

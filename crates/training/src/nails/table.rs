@@ -13,7 +13,6 @@ type Find = [f64; 3];
 
 /// How many phantoms, and how many pictures without nails.
 const COUNT: u32 = 400;
-/// Least confidences of the table.
 const LEAST: [f64; 10] = [0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 
 fn finds(scenes: &mut [Scene], detector: Detector) -> Vec<Find> {

@@ -7,7 +7,6 @@ use super::memory::Judge;
 use super::series::Series;
 use super::{LagSearch, Recording, channels, memory};
 
-/// Rows of the grid of a recording.
 const MOST_ROWS: f64 = 16_384.0;
 /// The grid is no finer than this, seconds.
 const FINEST_S: f64 = 0.005;

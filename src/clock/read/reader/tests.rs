@@ -28,7 +28,6 @@ fn read(show: &Show, roi: ClockRoi, frames: usize, hidden: std::ops::Range<usize
     read_as(format, show, roi, frames, hidden)
 }
 
-/// Reads frames by this format.
 fn read_as(format: &str, show: &Show, roi: ClockRoi, frames: usize, hidden: std::ops::Range<usize>) -> Tally {
     let blind = Show { clock: None, panel: show.panel, turn: show.turn, ..Show::new(ClockFont::Mono, true) };
     let mut reader = ClockReader::new(&clock(roi, format), &show.info()).unwrap();
@@ -53,7 +52,6 @@ fn read_as(format: &str, show: &Show, roi: ClockRoi, frames: usize, hidden: std:
     Tally { right, wrong, other, fitting, readings, region: reader.region(), effort: reader.effort() }
 }
 
-/// A clock of this format on a wide panel.
 fn wide(font: ClockFont, light: bool, format: &str, offset_s: f64) -> Show {
     let mut show = Show { panel: [120, 30, 260, 40], ..Show::new(font, light) };
     if let Some(clock) = &mut show.clock {

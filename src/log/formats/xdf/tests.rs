@@ -2,7 +2,6 @@ use std::fs;
 
 use crate::log::{Columns, Log};
 
-/// A chunk.
 fn chunk(tag: u16, content: &[u8]) -> Vec<u8> {
     let mut bytes = vec![4];
     bytes.extend((content.len() as u32 + 2).to_le_bytes());

@@ -36,7 +36,6 @@ const STROKES: [(std::ops::Range<f64>, f64); 4] =
     [(3.5..5.0, 0.13), (5.0..8.0, 0.20), (8.0..14.0, 0.22), (20.0..40.0, 0.28)];
 /// Of pale paint, whose luma is three to four times as high, by so much less.
 const PALE_STROKES: f64 = 0.3;
-/// Points that [`Blot::points`] gives.
 const POINTS: usize = 4096;
 
 /// A blot as it was painted.

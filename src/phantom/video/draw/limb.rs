@@ -10,7 +10,6 @@ pub(in crate::phantom::video) struct Limb {
 #[derive(Debug)]
 pub(in crate::phantom::video) struct Bone {
     pub(in crate::phantom::video) ends: [[f64; 2]; 2],
-    /// Half widths at its ends.
     pub(in crate::phantom::video) half_widths: [f64; 2],
     /// 1 over its squared length.
     inverse: f64,

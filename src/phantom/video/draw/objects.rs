@@ -16,9 +16,7 @@ const KIND_DISTRACTORS: u32 = 12;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(in crate::phantom::video) enum Outline {
-    /// A disc.
     Disc,
-    /// A square.
     Square,
     /// A strip with round ends, four times as long as wide.
     Strip,

@@ -160,7 +160,6 @@ const AGAIN: usize = 8;
 pub struct Lead {
     /// The nail's frame: origin its centre, up its axis, unit its length.
     pub(super) nail: Frame,
-    /// The template there.
     pub(super) template: OutlineShape,
     /// Where it comes from.
     pub(super) origin: Origin,

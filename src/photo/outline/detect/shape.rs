@@ -27,7 +27,6 @@ pub struct OutlineShape {
 pub(super) const TAPER: f64 = 0.03;
 
 impl OutlineShape {
-    /// Point of the frame at (u, v).
     pub(super) fn point(&self, u: f64, v: f64) -> [f64; 2] {
         let (sin, cos) = self.turn.sin_cos();
         let (a, b) = (u * self.width / 2.0, v * self.length / 2.0);

@@ -48,7 +48,6 @@ impl Folder {
         self.0.path()
     }
 
-    /// All that is in it.
     fn bytes(&self) -> BTreeMap<String, Vec<u8>> {
         bytes_below(self.path())
     }

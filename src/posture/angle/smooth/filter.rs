@@ -46,7 +46,6 @@ struct Passed {
     used: bool,
 }
 
-/// A smoothed row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
     pub(super) value: f64,

@@ -8,7 +8,6 @@ use crate::posture::Angle;
 /// Sums of the pairs, centred as they come (Welford 1962, doi:10.1080/00401706.1962.10490022).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pairs {
-    /// How many there were.
     pub(super) count: u64,
     mean: [f64; 2],
     /// Sums of squares and products: xx, xy, yy.

@@ -95,7 +95,6 @@ impl Overlay {
         Ok(Self { encoder, info: info.clone(), ticks_per_s, picture: Picture::new(format) })
     }
 
-    /// Draws on a copy of a frame and adds it.
     pub(crate) fn add(&mut self, frame: &Frame<'_>, drawing: &Drawing<'_>) -> Result<(), VideoError> {
         upright::copy(frame, &self.info, &mut self.picture);
         self.draw(frame.index, frame.time_s, drawing);

@@ -24,7 +24,6 @@ pub(crate) struct Look {
     pub(crate) blur_px: f64,
     /// What is usually left unexplained within the marker, over its contrast, both squared.
     pub(crate) misfit: f64,
-    /// The least that it was.
     pub(crate) least_misfit: f64,
     /// Standard deviation of what is left unexplained in each plane.
     pub(crate) noise: [f64; 3],

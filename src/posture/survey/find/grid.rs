@@ -23,7 +23,6 @@ impl Area {
     }
 }
 
-/// A spot on the grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Spot {
     pub(super) at: [f64; 2],

@@ -214,7 +214,6 @@ impl Tree {
         component.level = level;
     }
 
-    /// The spots of a branch that ends at `end`.
     fn end_branch(&mut self, number: u32, end: u8) {
         let component = self.components[number as usize];
         if component.sums.area < LEAST_AREA || f32::from(component.top - end.min(component.top)) < self.least_contrast {

@@ -27,7 +27,6 @@ const KEPT: usize = 24;
 /// For each place of the chain the spot that it is given.
 pub(crate) type Naming = Vec<Option<usize>>;
 
-/// What a naming costs in a frame.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Cost {
     /// All that does not depend on which way flexion turns.

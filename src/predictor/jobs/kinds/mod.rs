@@ -29,7 +29,6 @@ fn data_files(work: &Work<'_>, role: &str) -> Vec<DataFile> {
     work.of(role).map(DataFile::from).collect()
 }
 
-/// Foreseen recordings of a role.
 fn foreseen(inputs: &[Foreseen], role: &str) -> Vec<DataFile> {
     inputs.iter().filter(|input| input.role == role).map(|input| DataFile::from(input.path.clone())).collect()
 }

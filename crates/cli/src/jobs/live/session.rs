@@ -228,7 +228,6 @@ pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
     Ok(ended(common, &report))
 }
 
-/// Models of whatever finger there is.
 fn all(models: &[PathBuf]) -> Vec<OfFinger<PathBuf>> {
     models.iter().cloned().map(OfFinger::any).collect()
 }

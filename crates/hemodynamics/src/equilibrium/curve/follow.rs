@@ -167,7 +167,6 @@ impl Place {
         }
     }
 
-    /// Between this place and another.
     pub(super) fn between(&self, other: &Place, part: f64) -> Place {
         let mix = |a: f64, b: f64| a + part * (b - a);
         Place {

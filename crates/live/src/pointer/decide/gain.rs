@@ -6,7 +6,6 @@
 
 use super::super::config::{Config, Mode};
 
-/// The speed of a shear, px/s.
 pub(super) fn velocity_px_per_s(config: &Config, shear_n: [f64; 2]) -> [f64; 2] {
     let (size_n, direction) = beyond(config.dead_zone_n, shear_n);
     direction.map(|part| part * speed_px_per_s(config, size_n))

@@ -39,7 +39,6 @@ const FAULTS: [Fault; 12] = [
     Fault::Lost,
 ];
 
-/// A fault lasts, s.
 const LASTS_S: f64 = 1.0;
 
 /// In the air, on the desk, moving; then a click and a drag, or a tap and a tap that drags.

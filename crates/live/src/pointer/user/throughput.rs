@@ -21,7 +21,6 @@ pub(super) struct Throughput {
     pub(super) bits_per_s: Option<f64>,
     /// Its standard error between persons, bits/s; none of fewer than two.
     pub(super) standard_error: Option<f64>,
-    /// Targets that were given up.
     pub(super) given_up: usize,
     /// The conditions, means over persons.
     pub(super) conditions: Vec<Condition>,

@@ -50,7 +50,6 @@ impl Connector {
         Ok(Self { orders, ports, wake })
     }
 
-    /// Asks for a port.
     pub(in crate::source) fn ask(&self) {
         // The thread ends only with the stream.
         let _ = self.orders.send(());

@@ -28,7 +28,6 @@ pub(in crate::source) enum Port {
 
 /// What there was to read.
 pub(in crate::source) enum Received {
-    /// So many bytes.
     Bytes(usize),
     Nothing,
     /// The port was unplugged, or the other side has gone.

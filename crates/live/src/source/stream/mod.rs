@@ -22,7 +22,6 @@ use crate::wire::{Frames, LineOptions, Lines, Meaning, Naming, Row, Sample, Spoi
 use held::Held;
 use live::Live;
 
-/// The bits of a frame's counter.
 const FRAME_COUNTER_BITS: u32 = 16;
 
 /// What the caller knows of a stream beforehand.

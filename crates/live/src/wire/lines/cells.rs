@@ -83,7 +83,6 @@ impl<'a> Iterator for Cells<'a> {
     }
 }
 
-/// The cells of a line as names.
 pub(super) fn names_of(line: &[u8], separator: Separator) -> Vec<String> {
     Cells::new(line, separator).map(|cell| String::from_utf8_lossy(cell).replace("\"\"", "\"")).collect()
 }

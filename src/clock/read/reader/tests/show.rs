@@ -73,7 +73,6 @@ impl Show {
         Format { width, height, subsampling: None, depth: 8 }
     }
 
-    /// The stored picture of a frame.
     pub(super) fn picture(&self, frame: usize) -> Picture {
         let time_s = self.time_s(frame);
         let light = 1.0 + self.flicker * (std::f64::consts::TAU * 100.0 * time_s + 0.8).sin();

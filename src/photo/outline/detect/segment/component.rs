@@ -10,7 +10,6 @@ const WHOLE: usize = 32;
 const CELL: usize = 2;
 /// Probability from which a cell is nail, or core.
 const THRESHOLD: f32 = 0.5;
-/// Cells that a component has at least.
 const LEAST_CELLS: usize = 4;
 
 /// A part of a photograph as the network gets it.
@@ -59,7 +58,6 @@ impl View {
         Planes { size: [3, rows, columns], values }
     }
 
-    /// The place of a cell on the photograph.
     fn place(&self, cell: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let share = (cell[k] + 0.5) * CELL as f64 / self.size[k] as f64;
