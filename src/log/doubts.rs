@@ -383,7 +383,10 @@ mod tests {
         let minutes = every(0.04 / 60.0, 1500).expect("a minute at 25 Hz");
         assert!(minutes.contains("rows are 0.000667 s apart, and all of them within 0.999 s"), "{minutes}");
         let days = every(0.04 / 86_400.0, 300).expect("12 s at 25 Hz");
-        assert!(days.contains("rows are 0.000000463 s apart") && days.contains("days as a spreadsheet counts"), "{days}");
+        assert!(
+            days.contains("rows are 0.000000463 s apart") && days.contains("days as a spreadsheet counts"),
+            "{days}"
+        );
         assert!(every(0.08 / 60.0, 750).is_some());
         assert_eq!([every(1e-3, 60_000), every(1e-3, 5000), every(0.01, 100), every(1e-4, 20)], [(); 4].map(|()| None));
     }

@@ -109,7 +109,8 @@ impl Table {
         }
         let mut places = HashMap::with_capacity(names.len());
         for (k, name) in names.iter().enumerate() {
-            if places.insert(name.clone(), k).is_some() {
+            // Spreadsheets leave columns without a name behind.
+            if *places.entry(name.clone()).or_insert(k) != k && !name.is_empty() {
                 return Err(failed(format!("two columns are named `{name}`; rename one")));
             }
         }

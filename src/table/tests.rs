@@ -198,7 +198,7 @@ fn damaged_files_are_refused() {
         (b"a,b\n1,2\n1,2,3\n", "line 3 has 3 cells and the first line 2"),
         (b"a;b\n1,5;2.5\n", "decimal commas (line 2) and decimal points (line 2)"),
         (b"a;b\n1,5\n", "line 2 has 1 cells and the first line 2"),
-        (b"a,a\n1,2\n", "two columns are named `a`"),
+        (b"a,a,,\n1,2,,\n", "two columns are named `a`"),
         (b"a,b\n1,\xff\n", "line 2 is not UTF-8"),
     ] {
         let message = read_text(text).unwrap_err().to_string();

@@ -125,10 +125,12 @@ impl Decide {
         outputs: &mut Outputs,
     ) -> Result<(), LiveError> {
         if self.rows == 0 && self.looks_like_counts(row) {
-            if self.answers.is_some() {
-                return Err(LiveError::Request(COUNTS.to_owned()));
+            match &self.answers {
+                None => self.are_counts = true,
+                // Models that were trained on counts.
+                Some(answers) if answers.sensor.answering.greatest_input() > COUNT_V => {}
+                Some(_) => return Err(LiveError::Request(COUNTS.to_owned())),
             }
-            self.are_counts = true;
         }
         self.rows += 1;
         if row.time_s.is_finite() {

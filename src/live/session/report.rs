@@ -161,7 +161,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     figures.columns = outputs.header;
     if let Some(mut predicted) = outputs.predicted {
         // Where nothing was answered that is what stands there, and not what an earlier session left.
-        failed.extend(predicted.push("").and_then(|()| predicted.close()).err().map(|why| why.to_string()));
+        failed.extend(predicted.begin().and_then(|()| predicted.close()).err().map(|why| why.to_string()));
         figures.lost_by_disk += predicted.lost;
         failed.extend(predicted.finish().err().map(|why| why.to_string()));
     }

@@ -73,8 +73,9 @@ pub(super) fn note<F: Serialize>(
     if found.unknown_s > 0.0 || found.not_judged > 0 {
         report.notes.push(format!(
             "contact is not known for {:.1} s, which are not counted; presses that begin there, {}, are neither true \
-             nor false",
-            found.unknown_s, found.not_judged
+             nor false; contacts of which the beginning or the end is not known, {}, count neither as pressed nor as \
+             missed",
+            found.unknown_s, found.not_judged, found.cut_off
         ));
     }
     if !led {

@@ -212,6 +212,12 @@ impl Answering {
         self.gate.as_ref().filter(|_| contact == Some(Contact::Touch)).map(|gated| gated.angle)
     }
 
+    /// The greatest value of a photodiode that a model was trained on.
+    pub(crate) fn greatest_input(&self) -> f64 {
+        let inputs = self.voices.iter().flat_map(|voice| voice.predictor.inputs());
+        inputs.map(|channel| channel.high).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// How many rows lay outside of what a model was trained on.
     #[must_use]
     pub fn outside(&self) -> u64 {

@@ -4,7 +4,7 @@
 //! Out: the contacts, with the time that was looked at. Two contacts closer than [`MERGED_S`] are one: a force that
 //! hovers at its threshold is no second touch. Rows further apart than [`LONGEST_GAP_S`] have a gap between them, in
 //! which nothing is known: a contact that reaches one has no known end there. Between two rows contact is known where
-//! both say it.
+//! both say it, or where one that says the same comes less than [`MERGED_S`] before, whatever is missing between them.
 
 use serde::Serialize;
 
@@ -35,9 +35,12 @@ pub struct Contacts {
     known: Vec<[f64; 2]>,
     /// The time between rows of which contact is known, seconds.
     pub seconds: f64,
-    /// The time between rows of which one does not say whether the finger touches, seconds; gaps are not counted.
-    pub(crate) unknown_s: f64,
+    /// The time of which contact isn't known, but for that since the last row that says it, seconds; and that.
+    unknown_s: f64,
+    open_s: f64,
     last: Option<(f64, Option<bool>)>,
+    /// The last row that says it, where none but rows that don't has come since.
+    said: Option<(f64, bool)>,
 }
 
 impl Contacts {
@@ -46,18 +49,26 @@ impl Contacts {
         if !time_s.is_finite() {
             return;
         }
-        let before = self.last.filter(|(last_s, _)| !begins && (0.0..=LONGEST_GAP_S).contains(&(time_s - last_s)));
+        let row_before = self.last.filter(|(last_s, _)| !begins && (0.0..=LONGEST_GAP_S).contains(&(time_s - last_s)));
+        let says_the_same = |(said_s, said): &(f64, bool)| touches == Some(*said) && time_s - said_s < MERGED_S;
+        let said = self.said.filter(|said| row_before.is_some() && says_the_same(said));
+        let before = said.map(|(said_s, said)| (said_s, Some(said))).or(row_before);
         let known_before = before.and_then(|(_, touched)| touched);
         if let Some((last_s, _)) = before {
             if touches.is_some() && known_before.is_some() {
+                self.open_s = 0.0;
                 self.seconds += time_s - last_s;
                 match self.known.last_mut().filter(|known| known[1] == last_s) {
                     Some(known) => known[1] = time_s,
                     None => self.known.push([last_s, time_s]),
                 }
             } else {
-                self.unknown_s += time_s - last_s;
+                self.open_s += time_s - last_s;
             }
+        }
+        if touches.is_some() || row_before.is_none() {
+            self.unknown_s += std::mem::take(&mut self.open_s);
+            self.said = touches.map(|touches| (time_s, touches));
         }
         match (known_before, touches) {
             (Some(true), Some(_)) => {
@@ -80,6 +91,12 @@ impl Contacts {
             _ => {}
         }
         self.last = Some((time_s, touches));
+    }
+
+    /// The time between rows of which one does not say whether the finger touches, seconds; gaps are not counted.
+    #[must_use]
+    pub(crate) fn unknown_s(&self) -> f64 {
+        self.unknown_s + self.open_s
     }
 
     /// Whether contact is known at a time, of rows whose times ascend as a stream's do.

@@ -67,6 +67,8 @@ pub struct Evaluation {
     pub repeated: u64,
     /// Presses while contact is not known: neither true nor false.
     pub not_judged: usize,
+    /// Contacts whose beginning or end is not known: no true presses.
+    pub cut_off: usize,
     /// An hour; none without time.
     #[serde(flatten)]
     pub rate: Option<FalseRate>,
@@ -121,6 +123,7 @@ pub(super) struct Tally {
     pub(super) false_switches: u64,
     pub(super) repeated: u64,
     pub(super) not_judged: usize,
+    pub(super) cut_off: usize,
     pub(super) missed: usize,
     pub(super) let_go: u64,
     pub(super) delays_on_s: Vec<f64>,
@@ -175,9 +178,10 @@ impl Evaluation {
 impl Tally {
     pub(super) fn of(config: &SwitchConfig, trace: &Trace) -> Self {
         let contacts = &trace.contacts;
-        let mut tally = Self { seconds: contacts.seconds, unknown_s: contacts.unknown_s, ..Self::default() };
+        let mut tally = Self { seconds: contacts.seconds, unknown_s: contacts.unknown_s(), ..Self::default() };
         let presses = presses(config, trace, &mut tally.let_go);
         tally.presses = contacts.contacts.iter().filter(|one| one.start_known && one.end_known).count();
+        tally.cut_off = contacts.contacts.len() - tally.presses;
         tally.decisions = presses.len();
         tally.not_judged = presses.iter().filter(|press| !contacts.knows(press[0])).count();
         for Match { press_s, release_s, contact, fate } in compare(&presses, contacts) {
@@ -209,6 +213,7 @@ impl Tally {
         self.false_switches += other.false_switches;
         self.repeated += other.repeated;
         self.not_judged += other.not_judged;
+        self.cut_off += other.cut_off;
         self.missed += other.missed;
         self.let_go += other.let_go;
         self.delays_on_s.extend(&other.delays_on_s);
@@ -228,6 +233,7 @@ impl Tally {
             false_switches: self.false_switches,
             repeated: self.repeated,
             not_judged: self.not_judged,
+            cut_off: self.cut_off,
             rate: rate_of(&self.recordings).map(FalseRate::from),
             dispersion: dispersion(&self.recordings),
             missed: self.missed,

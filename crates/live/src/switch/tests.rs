@@ -331,9 +331,26 @@ fn what_begins_while_contact_is_not_known_is_not_judged() {
     }
     let all = Evaluation::of(&config, &[partly]);
     assert_eq!((all.decisions, all.presses, all.not_judged, all.missed, all.false_switches), (20, 17, 2, 0, 0));
+    assert_eq!(all.cut_off, 1);
     assert!((all.unknown_s - 12.72).abs() <= 1e-6 && (3600.0 * all.hours - 87.27).abs() <= 1e-6, "{all:?}");
     let all = Evaluation::of(&config, &[whole]);
     assert_eq!((all.not_judged, all.unknown_s), (0, 0.0));
+}
+
+#[test]
+fn rows_that_do_not_say_it_between_rows_that_say_the_same_cost_nothing() {
+    let (whole, config) = (trace(1, 100.0), SwitchConfig::of(0.5, 0.3));
+    // A row amid each contact, for 0.08 s in another, for 0.12 s in a third.
+    let known = |k: usize| k % 500 != 420 && !(405..413).contains(&k) && !(905..917).contains(&k);
+    let mut partly = Trace { contacts: Contacts::default(), ..whole.clone() };
+    for (k, &t_s) in whole.time_s.iter().enumerate() {
+        partly.contacts.push(t_s, known(k).then_some(t_s % 5.0 >= 4.0 && t_s % 5.0 < 4.4), k == 0);
+    }
+    let (all, of_whole) = (Evaluation::of(&config, &[partly]), Evaluation::of(&config, &[whole]));
+    assert_eq!((all.presses, all.cut_off, of_whole.presses, of_whole.cut_off), (19, 2, 20, 0), "{all:?}");
+    assert_eq!((all.missed, all.false_switches, all.repeated), (0, 0, 0), "{all:?}");
+    assert!((all.unknown_s - 0.13).abs() <= 1e-9, "{all:?}");
+    assert!((3600.0 * (of_whole.hours - all.hours) - 0.13).abs() <= 1e-9, "{all:?}");
 }
 
 #[test]

@@ -103,9 +103,7 @@ impl Recording {
     /// # Errors
     /// The file can't be made, or could not be written.
     pub(crate) fn push(&mut self, row: &str) -> Result<(), LiveError> {
-        if self.writer.is_none() && !self.begun {
-            self.begin()?;
-        }
+        self.begin()?;
         let mut pending = self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner);
         if pending.failed {
             drop(pending);
@@ -128,7 +126,14 @@ impl Recording {
         Ok(())
     }
 
-    fn begin(&mut self) -> Result<(), LiveError> {
+    /// Makes the file, with the names of its columns, unless that is done.
+    ///
+    /// # Errors
+    /// It can't be made.
+    pub(crate) fn begin(&mut self) -> Result<(), LiveError> {
+        if self.begun {
+            return Ok(());
+        }
         let mut file = create_growing(&self.grows, self.replace).map_err(|why| self.refused(why))?;
         let header = self.columns.join(",") + "\n";
         file.write_all(header.as_bytes()).map_err(|why| self.refused(why))?;
