@@ -155,6 +155,23 @@ impl LabelMe {
         self.image_width.zip(self.image_height).map(|(width, height)| [width, height])
     }
 
+    /// The program whose annotations these are, where they are those of another one that is known.
+    #[must_use]
+    pub fn other_program(&self) -> Option<&'static str> {
+        let has = |key: &str| self.other.contains_key(key);
+        // Of several pictures a file of VIA has an entry each.
+        let mut entries = self.other.values().chain(self.other.get("_via_img_metadata")).filter_map(Value::as_object);
+        match () {
+            () if !self.shapes.is_empty() => None,
+            () if has("images") && has("annotations") => Some("COCO"),
+            () if has("regions") || has("_via_img_metadata") || entries.any(|one| one.contains_key("regions")) => {
+                Some("VIA")
+            }
+            () if has("objects") && has("size") => Some("Supervisely"),
+            () => None,
+        }
+    }
+
     /// Reads one file.
     ///
     /// # Errors
@@ -235,6 +252,18 @@ mod tests {
         read.write(&path).unwrap();
         let written: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
         assert_eq!(written, serde_json::from_str::<Value>(text).unwrap());
+    }
+
+    #[test]
+    fn annotations_of_other_programs_are_known() {
+        let of = |text: &str| LabelMe::parse(Path::new("a.json"), text.as_bytes()).unwrap().other_program();
+        assert_eq!(of(r#"{"images":[{"id":1,"file_name":"s01.png"}],"annotations":[],"categories":[]}"#), Some("COCO"));
+        let via = r#"{"filename":"s01.png","size":9,"regions":[]}"#;
+        assert_eq!([of(via), of(&format!(r#"{{"s01.png9":{via}}}"#))], [Some("VIA"); 2]);
+        assert_eq!(of(&format!(r#"{{"_via_settings":{{}},"_via_img_metadata":{{"s01.png9":{via}}}}}"#)), Some("VIA"));
+        assert_eq!(of(r#"{"size":{"height":9,"width":9},"objects":[]}"#), Some("Supervisely"));
+        assert_eq!([of("{}"), of(r#"{"shapes":[],"images":3}"#), of(r#"{"a":{"b":1}}"#)], [None; 3]);
+        assert_eq!(of(r#"{"shapes":[{"label":"nail"}],"images":[],"annotations":[]}"#), None);
     }
 
     #[test]

@@ -123,9 +123,13 @@ pub(crate) fn say_the_same(key: &str, one: &str, other: &str) -> bool {
     one == other || [(&one, &other), (&other, &one)].iter().any(|(number, other)| is_number(number, other, &key))
 }
 
+/// The number that a text is.
+fn number(text: &str) -> Option<f64> {
+    text.parse::<f64>().ok().filter(|number| number.is_finite() && text.len() <= DIGITS)
+}
+
 /// Whether a text is the same number as another, before which the key or its beginning may be written.
 fn is_number(text: &str, other: &str, key: &str) -> bool {
-    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && text.len() <= DIGITS);
     let Some(value) = number(text) else { return false };
     let word = other.trim_start_matches(char::is_alphabetic);
     let (before, rest) = other.split_at(other.len() - word.len());
@@ -134,12 +138,14 @@ fn is_number(text: &str, other: &str, key: &str) -> bool {
     number(&after) == Some(value)
 }
 
-/// A warning where two names of what there is one of, `Anna` and `anna`, `1` and `01`, differ in case, spaces, zeros in
-/// front of numbers or the encoding of accents only.
+/// A warning where two names of what there is one of, `Anna` and `anna`, `1`, `01` and `1.0`, differ in case, spaces,
+/// how a number is written or the encoding of accents only.
 pub(crate) fn twins<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let mut seen: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
     for name in names {
-        seen.entry(unpadded(name)).or_default().insert(name);
+        let key = unpadded(name);
+        let key = number(&key).filter(|_| key.contains('.')).map_or(key, |number| number.to_string());
+        seen.entry(key).or_default().insert(name);
     }
     let twins: Vec<BTreeSet<&str>> = seen.into_values().filter(|alike| alike.len() > 1).collect();
     let has_accents_apart = twins.iter().flatten().any(|name| composed(name) != *name);
@@ -151,9 +157,9 @@ pub(crate) fn twins<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) ->
     let names: Vec<String> = twins.iter().map(names).collect();
     let by = match (has_zeros, has_accents_apart) {
         (false, false) => "case or spaces",
-        (true, false) => "case, spaces or zeros in front of numbers",
+        (true, false) => "case, spaces or how numbers are written",
         (false, true) => "case, spaces or the encoding of accents",
-        (true, true) => "case, spaces, zeros in front of numbers or the encoding of accents",
+        (true, true) => "case, spaces, how numbers are written or the encoding of accents",
     };
     let compose = if has_accents_apart { format!(" {COMPOSE}") } else { String::new() };
     (!twins.is_empty()).then(|| {
@@ -231,8 +237,9 @@ mod tests {
     #[test]
     fn zeros_in_front_of_numbers_make_no_other_name() {
         let said = |names: &[&str]| twins("subjects", names.iter().copied()).unwrap_or_default();
-        let zeros = "differ in case, spaces or zeros in front of numbers only, and count apart: are they the same?";
-        for [one, other] in [["01", "1"], ["S1", "s01"], ["0", "00"], ["p003_b", "p3_b"], ["s 007", "s07"]] {
+        let zeros = "differ in case, spaces or how numbers are written only, and count apart: are they the same?";
+        let alike = [["01", "1"], ["S1", "s01"], ["0", "00"], ["p003_b", "p3_b"], ["s 007", "s07"], ["1", "1.0"]];
+        for [one, other] in alike {
             assert_eq!(said(&[one, other, "s11", "10"]), format!("subjects `{one}` and `{other}` {zeros}"));
         }
         assert_eq!(said(&["s1", "s10", "s11", "s100", "s101", "1", "10", "0.05", "0.5", "1,05", "1,5", "0", "s0"]), "");

@@ -608,7 +608,19 @@ fn outlines_of_no_photograph_and_drawn_nails_left_out_are_said() {
     dir.write("set/normal/settings.json", "{\"camera\": 3}");
     dir.write("set/extension/other.json", labelme([320, 240], &[("finger", "polygon", drawn_outline())]));
     let job = ["photos", "set", "--out", "out"];
-    dir.lunula(&job).expect(0).never_says("LabelMe file(s)").never_says("left out");
+    dir.lunula(&job).expect(0).never_says("LabelMe file(s)").never_says("left out").never_says("annotations of");
+    // One file of another program for the whole set.
+    dir.write("set/instances.json", "{\"images\": [], \"annotations\": [], \"categories\": []}");
+    dir.write("set/annotations.xml", "<?xml version=\"1.0\"?>\n<annotations><version>1.1</version></annotations>");
+    for (file, program) in [("instances.json", "COCO"), ("annotations.xml", "CVAT")] {
+        let said = format!("warning: {file} holds annotations of {program}, which are not read; export them as LabelMe");
+        dir.lunula(&job).expect(0).says(&said);
+        dir.lunula(&[&job[..], &["--outline", "detected"]].concat()).never_says("annotations of");
+        std::fs::remove_file(dir.path(&format!("set/{file}"))).expect("removed");
+    }
+    dir.write("set/normal/c.json", "{\"filename\": \"c.png\", \"size\": 9, \"regions\": []}");
+    dir.lunula(&job).expect(1).says("c.json: holds annotations of VIA, which are not read; export them as LabelMe");
+    dir.nail("set/normal/c");
     for (from, to) in [("normal/a", "normal/x"), ("extension/b", "extension/y")] {
         let path = |name: &str| dir.path(&format!("set/{name}.png"));
         std::fs::rename(path(from), path(to)).expect("renamed");

@@ -5,7 +5,7 @@
 //! Measured: 0 in every 101st row of a phantom's photodiodes took Fy of a model from 0.14 to 0.40 N, 0 in every 60th
 //! row of a force `peak_rise` of `skill` from 3 to 107 N/s. Of 24 phantom logs (touch, bending, random; 13 channels
 //! each) no row leaps so; the codes above leap by 14 to 70,000 times as much as other rows step. Forces of a finger
-//! that taps do at 12.5 rows a second: from rest, and each as far as it goes.
+//! that taps do at 12.5 and 25 rows a second: from rest, and each as far as it goes.
 
 use super::lines::order::short;
 use super::naming::role::Role;
@@ -45,12 +45,12 @@ pub(super) fn leaps(name: &str, values: &[f64], ends: [f64; 2]) -> Option<Leaps>
     let at = 9 * steps.len() / 10;
     let usual = *steps.select_nth_unstable_by(at, f64::total_cmp).1;
     let far = (STEPS * usual).max(RANGE * range);
-    let leaps = |row: &[f64]| {
-        let leap = (row[1] - row[0]).abs().min((row[1] - row[2]).abs());
-        leap > far && (row[2] - row[0]).abs() < BACK * leap
+    let leaps = |&at: &usize| {
+        let leap = (values[at] - values[at - 1]).abs().min((values[at] - values[at + 1]).abs());
+        leap > far && (values[at + 1] - values[at - 1]).abs() < BACK * leap
     };
-    let alone = || values.windows(3).filter(|row| leaps(row));
-    let mut to: Vec<f64> = alone().map(|row| row[1] + 0.0).collect();
+    let alone = || (1..values.len() - 1).filter(leaps);
+    let mut to: Vec<f64> = alone().map(|at| values[at] + 0.0).collect();
     to.sort_unstable_by(f64::total_cmp);
     let alike = to.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len())?;
     let found = Leaps { name: name.to_owned(), rows: to.len(), to: alike[0], there: alike.len() };
@@ -58,9 +58,12 @@ pub(super) fn leaps(name: &str, values: &[f64], ends: [f64; 2]) -> Option<Leaps>
     let are_taps = || {
         let Some(rest) = median_of(values.iter().copied().filter(|value| value.is_finite())) else { return false };
         let is_no_further = |value: f64| (ends[0] - TAPS * range..=ends[1] + TAPS * range).contains(&value);
-        let is_tap = |row: &[f64]| {
-            let rests = |value: f64| (value - rest).abs() <= BACK * (row[1] - rest).abs();
-            rests(row[0]) && rests(row[2]) && is_no_further(row[1])
+        let is_tap = |at: usize| {
+            let share = |row: usize| values.get(row).map_or(0.0, |value| (value - rest) / (values[at] - rest));
+            let rests = |row: usize| share(row).abs() <= BACK;
+            // In the row beside it the finger rests, or is on its way from there.
+            let comes = |beside: usize, beyond: usize| rests(beside) || (share(beside) > 0.0 && rests(beyond));
+            comes(at - 1, at.wrapping_sub(2)) && comes(at + 1, at + 2) && is_no_further(values[at])
         };
         2 * found.there <= found.rows && alone().all(is_tap)
     };
@@ -125,6 +128,14 @@ mod tests {
         let is_down = |k: usize| k % 60 == 7 || k % 120 == 8 || k % 300 > 270;
         let taps = |k: usize| if is_down(k) { tap(k) } else { 0.0 } - noise(k);
         assert_eq!(said_of("Fz_N", taps), None);
+        // Of three rows, two of them on the way.
+        let slower = |k: usize| match k % 60 {
+            7 | 9 => 0.4 * tap(k),
+            8 => tap(k),
+            _ if k % 300 > 270 => -1.0,
+            _ => 0.0,
+        };
+        assert_eq!(said_of("Fz_N", |k| slower(k) - noise(k)), None);
         assert!(said_of("P1", taps).is_some(), "blood is not so quick");
         for code in [0.0, -1.0, -999.0] {
             let held = |k: usize| if k % 600 < 200 { -1.5 - noise(k) } else { taps(k) };

@@ -99,7 +99,7 @@ pub struct PhotoSet {
     pub unlisted: Vec<String>,
     /// Folders within those of poses that hold photographs, which are not used, and how many, sorted.
     pub deeper: Vec<(String, usize)>,
-    /// JSON files beside photographs that are called as none of them, and that a manifest does not name, sorted.
+    /// JSON and XML files beside photographs that are called as none of them, and that a manifest does not name, sorted.
     pub alone: Vec<PathBuf>,
 }
 
@@ -428,14 +428,14 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
     Ok(paths.into_iter().partition(|p| !p.is_dir()))
 }
 
-/// The JSON files of a folder's files that are called as none of its pictures, whatever the encoding of accents.
+/// The JSON and XML files of a folder's files that are called as none of its pictures, whatever the encoding of accents.
 fn called_as_no_picture(files: &[PathBuf]) -> Vec<PathBuf> {
     let stem = |path: &Path| composed(&path.file_stem().unwrap_or_default().to_string_lossy());
     let is_any_picture =
         |path: &&PathBuf| is_picture(path) || extension(path).is_some_and(|e| OTHER_PICTURES.contains(&e.as_str()));
     let pictures: BTreeSet<String> = files.iter().filter(is_any_picture).map(|path| stem(path)).collect();
-    let is_json = |path: &&PathBuf| extension(path).is_some_and(|ending| ending == "json");
-    files.iter().filter(is_json).filter(|path| !pictures.contains(&stem(path))).cloned().collect()
+    let may_annotate = |path: &&PathBuf| extension(path).is_some_and(|ending| ending == "json" || ending == "xml");
+    files.iter().filter(may_annotate).filter(|path| !pictures.contains(&stem(path))).cloned().collect()
 }
 
 fn name_of(path: &Path) -> String {

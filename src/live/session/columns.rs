@@ -97,6 +97,13 @@ impl StreamColumns {
         (0..self.values.len()).filter(|&k| is_photodiode(&self.values[k]))
     }
 
+    /// That a column is there and read by another name.
+    fn read_as(&self, name: &str) -> Option<String> {
+        let at = self.names.iter().position(|own| own == name)?;
+        let Use::Value { at, .. } = self.meaning.uses[at] else { return None };
+        Some(format!("column `{name}` is read as `{0}`: write `{0}`", self.values[at]))
+    }
+
     fn text(&mut self) -> Use {
         self.meaning.texts += 1;
         Use::Text(self.meaning.texts - 1)
@@ -131,10 +138,14 @@ impl Recognizer {
         Box::new(move |names| {
             let columns = StreamColumns::of(names, &log, &keep)?;
             if let Some(lacking) = keep.iter().find(|name| is_alone && !columns.values.contains(name)) {
-                return Err(missing(lacking, names));
+                return Err(columns.read_as(lacking).unwrap_or_else(|| missing(lacking, names)));
             }
             if columns.values.is_empty() {
-                return Err(format!("no column is a photodiode or a force; its columns are {}", names.join(", ")));
+                return Err(format!(
+                    "no column is a photodiode or a force; its columns are {}; say which are, as --columns P1=NAME \
+                     (volts) or Fz_N=NAME (newtons)",
+                    names.join(", ")
+                ));
             }
             columns.check(&needs)?;
             let meaning = columns.meaning.clone();

@@ -266,10 +266,20 @@ const STEPS: u64 = 10;
 /// A device's clock whose drift against the host's is less is right about its unit, millionths (assumed).
 const SAME_UNIT_PPM: f64 = 1e5;
 
+/// No device sends rows as text so often (assumed: 2 MBd carry 10,000 of 20 bytes a second).
+const MOST_HZ: f64 = 50_000.0;
+
 /// Whether a stream's times are in another unit than seconds, in words: by the step between its rows, unless the
 /// arrival of rows agrees with it.
 fn unit(stream: &StreamCertificate) -> Option<String> {
     let counts = &stream.counts;
+    if stream.times == Some(StreamTimes::Arrival) {
+        let rate_hz = stream.rate_hz.filter(|rate_hz| counts.rows >= STEPS && *rate_hz > MOST_HZ)?;
+        return Some(format!(
+            "rows have no time of their own, and come at {rate_hz:.0} Hz: were they recorded before? Their times are \
+             those at which they came here; give them a column time_s"
+        ));
+    }
     if stream.times != Some(StreamTimes::Device) {
         return None;
     }
@@ -401,6 +411,8 @@ mod tests {
         assert!(doubted.starts_with("rows are 10 s apart") && doubted.contains("--time-unit"), "{doubted}");
         // A device whose clock runs a thousand times as fast as the host's.
         assert_eq!(unit(&stream(rows(600, 0), 10.0, Some(-999_000.0))), Some(doubted));
+        let at_once = StreamCertificate { times: Some(StreamTimes::Arrival), ..stream(rows(600, 0), 2e-6, None) };
+        assert!(unit(&at_once).unwrap().starts_with("rows have no time of their own, and come at 500000 Hz"));
         let days = unit(&stream(rows(600, 0), 0.04 / 86_400.0, None)).unwrap();
         assert!(days.contains("days as a spreadsheet counts them"), "{days}");
         let set_back = RowCounts { rows: 600, set_back: 599, ..RowCounts::default() };
@@ -409,6 +421,7 @@ mod tests {
         for fine in [
             stream(rows(600, 0), 0.01, None),
             stream(rows(60_000, 0), 5e-4, None),
+            StreamCertificate { times: Some(StreamTimes::Arrival), ..stream(rows(600, 0), 1e-4, None) },
             stream(rows(9, 0), 10.0, None),
             stream(rows(600, 3), 10.0, Some(40.0)),
             StreamCertificate { times: Some(StreamTimes::Arrival), ..stream(rows(600, 0), 10.0, None) },

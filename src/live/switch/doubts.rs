@@ -30,6 +30,31 @@ pub(super) fn on_another_clock(trace: &Trace) -> Option<String> {
     })
 }
 
+/// A flag that changes so often, and only at rows that are a multiple of so many apart, seconds as well, is held (assumed;
+/// by chance ten changes are all a multiple of three rows apart once in 20,000 recordings).
+const CHANGES: usize = 10;
+const HELD_ROWS: usize = 3;
+const HELD_S: f64 = 0.03;
+
+/// That contact, a flag, is of a slower log, whose values stand in several rows each.
+pub(super) fn held(times: &[f64], flags: &[f64]) -> Option<String> {
+    let changes: Vec<usize> = (1..flags.len()).filter(|&k| (flags[k] - flags[k - 1]).abs() == 1.0).collect();
+    let rows = changes.windows(2).map(|pair| pair[1] - pair[0]).reduce(common)?;
+    let step_s = median_of(times.windows(2).map(|pair| pair[1] - pair[0]))?;
+    let held_s = rows as f64 * step_s;
+    (changes.len() >= CHANGES && rows >= HELD_ROWS && held_s >= HELD_S).then(|| {
+        format!(
+            "contact changes in each {rows}th row only, {held_s:.2} s apart, as that of a slower log does: it comes up \
+             to so much late, and presses then seem to come before it; log it as often as the photodiodes"
+        )
+    })
+}
+
+/// The greatest number of which both are multiples.
+fn common(one: usize, other: usize) -> usize {
+    if other == 0 { one } else { common(other, one % other) }
+}
+
 /// A press that begins so long after its contact began, and after its end, is no press of it, seconds (assumed: blood
 /// follows within 0.4 s, 4.3).
 const LONG_S: f64 = 1.0;
@@ -138,4 +163,31 @@ fn open(trace: &Trace, found: &[Match]) -> Option<String> {
              what measures contact work? Where it did not, leave contact empty"
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contact_of_a_slower_log_is_seen() {
+        let said = |step_s: f64, every: usize, changes: usize| {
+            let times: Vec<f64> = (0..6000).map(|k| step_s * f64::from(k)).collect();
+            // Each is down for 0.4 s, about, and up for as long and some more.
+            let mut rows = Vec::new();
+            (0..changes).fold(0, |at, k| {
+                rows.push(at + 30 + 7 * (k * k % 11));
+                rows[k]
+            });
+            let down = |k: usize| rows.iter().filter(|&&row| row <= k / every * every).count() % 2 == 1;
+            let flags: Vec<f64> = (0..6000).map(|k| f64::from(u8::from(down(k)))).collect();
+            held(&times, &flags).unwrap_or_default()
+        };
+        let ten = said(0.01, 10, 40);
+        assert!(ten.contains("in each 10th row only, 0.10 s apart"), "{ten}");
+        assert!(said(0.01, 4, 12).contains("each 4th row only"));
+        for fine in [said(0.01, 1, 40), said(0.01, 2, 40), said(0.001, 10, 40), said(0.01, 10, 8)] {
+            assert_eq!(fine, "");
+        }
+    }
 }

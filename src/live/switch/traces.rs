@@ -8,7 +8,7 @@ use clap::{Args, ValueHint};
 use lunula_live::switch::{LONGEST_GAP_S, Trace, compared};
 use lunula_predictor::{Gate, Predictor};
 
-use super::doubts::on_another_clock;
+use super::doubts::{held, on_another_clock};
 use super::options::ContactOptions;
 use crate::job::Watch;
 use crate::live::error::LiveError;
@@ -200,15 +200,22 @@ fn read_trace(
     }
     said.warnings.extend(doubts::time(&times));
     said.warnings.extend(doubts::forces(iter::once((truth.column.as_str(), &truths[..]))));
+    said.warnings.extend(held(&times, &truths).or_else(|| doubts::held(&truth.column, &times, &truths)));
     let (rows, outside) = (trace.time_s.len(), trace.outside.iter().filter(|outside| **outside).count());
     said.warnings.extend(extrapolated(outside as u64, rows as u64));
     if rows == 0 {
         return Err(refused("has no rows with the LED on".to_owned()));
     }
     let unanswered = trace.value.iter().filter(|value| !value.is_finite()).count();
-    let lacks = "photodiodes that a model reads, or the unlit rows that its values need, are missing";
+    let lacks = if models.iter().any(|model| model.lags().is_some()) {
+        "photodiodes that a model reads, the unlit rows that its values need, or readings of the past, as far back as \
+         its --lags, are missing"
+    } else {
+        "photodiodes that a model reads, or the unlit rows that its values need, are missing"
+    };
     if unanswered == rows {
-        return Err(refused(format!("none of its {rows} rows has a prediction: {lacks}")));
+        let time = doubts::time(&times).map_or(String::new(), |doubt| format!("; {doubt}"));
+        return Err(refused(format!("none of its {rows} rows has a prediction: {lacks}{time}")));
     }
     if unanswered as f64 > MOST_UNANSWERED * rows as f64 {
         said.warnings.push(format!(

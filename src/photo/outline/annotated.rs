@@ -5,6 +5,7 @@
 //! outlines and axes in pixels of the *upright* photograph. Some tools draw on the upright picture, some on the stored
 //! one: the file's width and height show which ([`Drawn`]), and where they can't the file is refused.
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use geo::{Contains, Point};
@@ -13,7 +14,7 @@ use thiserror::Error;
 use super::{Axis, Outline, OutlineFault};
 use crate::labelme::{LabelMe, Shape, from_labelme, to_labelme};
 use crate::photo::normalize::NailFrame;
-use crate::photograph::{Photograph, is_picture, upright_from_stored};
+use crate::photograph::{Photograph, extension, is_picture, upright_from_stored};
 
 /// What a nail's polygon is labelled.
 pub const NAIL: &str = "nail";
@@ -64,9 +65,14 @@ pub enum AnnotationFault {
     Turned(String),
     #[error("{0}: no polygon labelled `nail` in it; label one, or remove the file to have the nail detected")]
     NoNail(String),
+    #[error("{0}: holds annotations of {1}, which are not read; {EXPORT}")]
+    OtherProgram(String, &'static str),
     #[error("{0}: whatever was found is rejected in it (`{NOT_A_NAIL}`), so nothing of the photograph is used")]
     Rejected(String),
 }
+
+/// What to do where another program's annotations are found.
+pub(crate) const EXPORT: &str = "export them as LabelMe files, one a photograph and called as it, or as masks (--masks)";
 
 /// What a LabelMe file says of one photograph.
 #[derive(Debug, Clone)]
@@ -182,6 +188,9 @@ impl Drawn {
 pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails, AnnotationFault> {
     let file = LabelMe::read(path)?;
     let name = path.display().to_string();
+    if let Some(program) = file.other_program() {
+        return Err(AnnotationFault::OtherProgram(name, program));
+    }
     let stored = drawn.or_of(&file).is_stored(file.size(), photo, &name)?;
     let mut found = labelled(&file, photo, stored, &[NAIL, DOUBTFUL]);
     for (line, nail) in loose_axes(&file, &found) {
@@ -202,6 +211,18 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails,
 /// Whether a file is LabelMe's and has a nail.
 pub(crate) fn has_nails(file: &Path) -> bool {
     LabelMe::read(file).is_ok_and(|file| file.shapes.iter().any(|shape| is(shape, NAIL)))
+}
+
+/// The program whose annotations a file holds, where it is another than LabelMe that is known.
+pub(crate) fn other_program(file: &Path) -> Option<&'static str> {
+    /// Of what stands in front of the root of an XML file.
+    const HEAD: u64 = 4096;
+    if extension(file).is_none_or(|ending| ending != "xml") {
+        return LabelMe::read(file).ok()?.other_program();
+    }
+    let mut head = Vec::new();
+    crate::input::open(file).ok()?.take(HEAD).read_to_end(&mut head).ok()?;
+    String::from_utf8_lossy(&head).contains("<annotations>").then_some("CVAT")
 }
 
 /// The photograph that an annotation says it was drawn on, where that is there and is another than `photo`: files that

@@ -14,7 +14,7 @@ pub use annotated::{
     AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, DrawnNails, NAIL, NOT_A_NAIL, ShapeFault, ToDraw,
     read as read_annotated,
 };
-pub(crate) use annotated::{Labelled, has_nails, labelled, other_photograph, to_file};
+pub(crate) use annotated::{EXPORT, Labelled, has_nails, labelled, other_photograph, other_program, to_file};
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 #[doc(hidden)]
 pub use detect::training;

@@ -3,7 +3,7 @@
 //! Warnings are what a person may have to act on; notes are what is good to know, one line for each kind.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::{MOST_AT_FULL_SCALE, Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{AxisUnknown, SavedOutlines, Source, Sources, has_nails};
+use crate::photo::outline::{AxisUnknown, EXPORT, SavedOutlines, Source, Sources, has_nails, other_program};
 use crate::photo::pose::{self, sort_by_pose};
 use crate::photo::results::{DrawnSheet, NailRow, NailTable, nail_columns};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
@@ -324,19 +324,24 @@ impl<'a> Findings<'a> {
         ))
     }
 
-    /// LabelMe files with nails that no photograph is called as.
-    fn of_no_photograph(&self) -> Option<String> {
-        if self.options.outlines.sources == Sources::Detect {
-            return None;
-        }
-        let mut such = self.set.alone.iter().filter(|file| has_nails(file));
-        let first = such.next()?;
-        Some(format!(
-            "{} LabelMe file(s) with nails are not used, as no photograph beside them is called so ({} first): were \
-             photographs renamed or removed? Call each as its photograph, or remove it",
-            1 + such.count(),
-            first.strip_prefix(&self.set.folder).unwrap_or(first).display()
-        ))
+    /// LabelMe files with nails that no photograph is called as, and other programs' annotations.
+    fn of_no_photograph(&self) -> impl Iterator<Item = String> {
+        let alone = if self.options.outlines.sources == Sources::Detect { &[][..] } else { &self.set.alone };
+        let called = |file: &'a Path| file.strip_prefix(&self.set.folder).unwrap_or(file).display();
+        let mut such = alone.iter().filter(|file| has_nails(file));
+        let unused = such.next().map(|first| {
+            format!(
+                "{} LabelMe file(s) with nails are not used, as no photograph beside them is called so ({} first): \
+                 were photographs renamed or removed? Call each as its photograph, or remove it",
+                1 + such.count(),
+                called(first)
+            )
+        });
+        let others = alone.iter().filter_map(move |file| {
+            let (file, program) = (called(file), other_program(file)?);
+            Some(format!("{file} holds annotations of {program}, which are not read; {EXPORT}"))
+        });
+        unused.into_iter().chain(others)
     }
 
     /// Outlines that were taken for another photograph's.

@@ -7,14 +7,14 @@ use serde::Serialize;
 
 use crate::files::Places;
 use crate::job::{Report, Watch};
-use crate::log::ambient_step_of;
+use crate::log::{GROUPS, ambient_step_of};
 use crate::predictor::data::{Inputs, RowOptions, read_inputs};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::answer::{Answering, contact_word, interval_cells};
 use crate::predictor::merit::doubts::extrapolated;
 use crate::predictor::open_models;
 use crate::stages::{Stages, Step, left_out};
-use crate::table::{Column, TableFormat, TableWriter, Value};
+use crate::table::{Column, TableFormat, TableWriter, Value, column_names};
 
 /// How to predict.
 #[derive(Debug, Clone)]
@@ -26,6 +26,10 @@ pub struct PredictOptions {
     /// Which rows are answered.
     pub rows: RowOptions,
 }
+
+/// Columns that say of which part of the data a row is.
+const TRIAL: &str = "trial";
+const PARTS: [&str; 4] = [TRIAL, GROUPS[0], GROUPS[1], GROUPS[2]];
 
 /// What was predicted.
 pub type PredictReport = Report<PredictFigures>;
@@ -145,7 +149,18 @@ pub fn predict(
         touch: counts.touch,
         bending: counts.bending,
     };
-    let mut report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
+    let several = read.recordings.len() > 1;
+    let names = column_names(data).unwrap_or_default();
+    let left: Vec<&str> = PARTS.into_iter().filter(|part| names.iter().any(|name| name == part)).collect();
+    let mut notes = read.notes;
+    if left.contains(&TRIAL) || several && !left.is_empty() {
+        notes.push(format!(
+            "predictions have no column {}: where trials, days or persons have to stay apart, as for `skill`, predict \
+             each by itself",
+            left.join(", ")
+        ));
+    }
+    let mut report = Report { left_out, warnings, notes, ..Report::new("predict", watch, figures) };
     if !answering.is_gated() {
         report.unused(&Answering::GATES, Answering::NO_GATE);
     }

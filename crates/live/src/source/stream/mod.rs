@@ -110,7 +110,7 @@ impl Stream {
                 let names = if let Feed::Live(live) = &feed { live.names.clone() } else { None };
                 let options = LineOptions {
                     columns: options.columns.or(names),
-                    names_first: matches!(feed, Feed::Play(_)),
+                    is_file: matches!(feed, Feed::Play(_)),
                     volts_per_count: address.volts_per_count,
                 };
                 Decoder::Lines(Box::new(Lines::new(naming, options)))

@@ -29,8 +29,8 @@ const ROOM: usize = 4096;
 pub struct LineOptions {
     /// The columns' names; none where the first line holds them.
     pub columns: Option<Vec<String>>,
-    /// Whether the first line has to hold the names, as that of a file; otherwise messages may come before them.
-    pub names_first: bool,
+    /// Whether they are a file's, whose names come before its numbers.
+    pub is_file: bool,
     /// The volts of a count of the columns that are scaled.
     pub volts_per_count: Option<f64>,
 }
@@ -71,10 +71,10 @@ impl Lines {
     /// Lines whose columns mean what `naming` says.
     #[must_use]
     pub fn new(naming: Naming, options: LineOptions) -> Self {
-        let LineOptions { columns, names_first, volts_per_count } = options;
+        let LineOptions { columns, is_file, volts_per_count } = options;
         Self {
             given: columns.is_some(),
-            opening: Some(Opening::new(naming, columns, names_first)),
+            opening: Some(Opening::new(naming, columns, is_file)),
             decoded: Decoded::default(),
             separator: Separator::Byte(b','),
             numbers: Numbers::default(),

@@ -1,9 +1,9 @@
 //! What comes before the columns have names.
 //!
-//! A file begins with its line of names. What a device sends may begin with the end of a line, with messages of its
-//! start, or with bytes of another baud rate; then the first line that may be one of names, and whose names mean
+//! What a device sends, and what a terminal wrote to a file of it, may begin with the end of a line, with messages of
+//! its start, or with bytes of another baud rate; the first line that may be one of names, and whose names mean
 //! something to the caller, is it. One whose names mean nothing is one all the same where numbers follow in as many
-//! cells.
+//! cells. A file's names come before its numbers, and some may be no words (`50 %`).
 
 use crate::wire::cell::is_name;
 use crate::wire::fault::WireFault;
@@ -46,8 +46,7 @@ struct Refused {
 pub(super) struct Opening {
     naming: Naming,
     given: Option<Vec<String>>,
-    /// Whether the first line has to be it.
-    strict: bool,
+    is_file: bool,
     declared: Option<Separator>,
     comment: Vec<u8>,
     refused: Option<Refused>,
@@ -63,11 +62,11 @@ pub(super) struct Opening {
 }
 
 impl Opening {
-    pub(super) fn new(naming: Naming, given: Option<Vec<String>>, strict: bool) -> Self {
+    pub(super) fn new(naming: Naming, given: Option<Vec<String>>, is_file: bool) -> Self {
         Self {
             naming,
             given,
-            strict,
+            is_file,
             declared: None,
             comment: Vec::new(),
             refused: None,
@@ -151,14 +150,11 @@ impl Opening {
         let separator = self.declared.unwrap_or_else(|| Separator::of_names(line));
         let text = std::str::from_utf8(line).ok().filter(|text| !text.contains(|c: char| c.is_control() && c != '\t'));
         let names = text.map(|_| names_of(line, separator)).unwrap_or_default();
-        let named = |names: &[String]| {
-            let blank = |name: &String| name.is_empty();
-            let cut_off = |name: &String| name.starts_with(['+', '-', '.']);
-            let name = |name: &String| is_name(name) && (self.strict || !cut_off(name));
-            names.iter().any(name) && (self.strict || names.iter().all(|one| name(one) || blank(one)))
-        };
-        if named(&names) {
-            return self.choose(names, separator, number, false);
+        let cut_off = |name: &String| name.starts_with(['+', '-', '.']);
+        let name = |name: &String| is_name(name) && (self.is_file || !cut_off(name));
+        let (any, all) = (names.iter().any(name), names.iter().all(|one| name(one) || one.is_empty()));
+        if any && (all || self.is_file) {
+            return Ok(self.choose(names, separator, number, all));
         }
         self.no_names(line, number, host_ns)
     }
@@ -202,14 +198,15 @@ impl Opening {
         names: Vec<String>,
         separator: Separator,
         number: u64,
-        is_row: bool,
-    ) -> Result<Option<Header>, WireFault> {
+        are_all_names: bool,
+    ) -> Option<Header> {
         match Meaning::of(&names, number, &mut self.naming) {
-            Ok(meaning) => Ok(Some(Header { names, separator, meaning, is_row })),
-            Err(fault) if self.strict => Err(fault),
+            Ok(meaning) => Some(Header { names, separator, meaning, is_row: false }),
             Err(fault) => {
-                self.refused = Some(Refused { cells: names.len(), separator, fault });
-                Ok(None)
+                if are_all_names || self.refused.is_none() {
+                    self.refused = Some(Refused { cells: names.len(), separator, fault });
+                }
+                None
             }
         }
     }
@@ -235,20 +232,18 @@ impl Opening {
             let cells = Cells::new(line, separator).count();
             let names = names_of(self.comment.trim_ascii(), separator);
             if names.len() == cells && names.iter().any(|name| is_name(name)) {
-                return self.choose(names, separator, number - 1, true);
+                let header = self.choose(names, separator, number - 1, true);
+                return Ok(header.map(|header| Header { is_row: true, ..header }));
             }
             self.numbers += 1;
             self.sample = (number, shown(line));
             let since_ns = *self.since_ns.get_or_insert(host_ns);
-            if self.strict || self.numbers >= LINES_WITHOUT_NAMES && host_ns >= since_ns + LINES_WITHOUT_NAMES_NS {
-                return Err(WireFault::NoNames { line: number, text: self.sample.1.clone() });
+            if self.is_file || self.numbers >= LINES_WITHOUT_NAMES && host_ns >= since_ns + LINES_WITHOUT_NAMES_NS {
+                // A single word is no line of names.
+                let refused = self.refused.take().filter(|refused| self.is_file && refused.cells > 1);
+                let none = || WireFault::NoNames { line: number, text: self.sample.1.clone() };
+                return Err(refused.map_or_else(none, |refused| refused.fault));
             }
-        } else if self.strict {
-            return Err(if self.is_garbled(1) {
-                self.garbled_fault()
-            } else {
-                WireFault::NoNames { line: number, text: shown(line) }
-            });
         }
         Ok(None)
     }

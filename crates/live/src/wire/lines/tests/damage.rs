@@ -39,9 +39,9 @@ proptest! {
     }
 
     #[test]
-    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..2000), names_first: bool, named: bool) {
+    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..2000), is_file: bool, named: bool) {
         let columns = named.then(|| vec!["time_s".to_owned(), "P1".to_owned()]);
-        let options = LineOptions { columns, names_first, volts_per_count: None };
+        let options = LineOptions { columns, is_file, volts_per_count: None };
         // Whether there are names in it does not matter.
         let _ = steps(&mut lines(options), &bytes, &[]);
     }

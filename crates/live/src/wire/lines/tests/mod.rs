@@ -173,8 +173,8 @@ fn rows_have_checksums_where_one_had() {
 
 #[test]
 fn faults_say_what_to_do() {
-    let fault = |text: &[u8], names_first: bool| {
-        let found = steps(&mut lines(LineOptions { names_first, ..Default::default() }), text, &[]);
+    let fault = |text: &[u8], is_file: bool| {
+        let found = steps(&mut lines(LineOptions { is_file, ..Default::default() }), text, &[]);
         found.unwrap_err().to_string()
     };
     for (text, words) in [
@@ -183,11 +183,16 @@ fn faults_say_what_to_do() {
         (b"", "ends before a line of names"),
         (b"\xf3\x02\xe0\x1c\x00\x9f\xfe\xe0\x80\n\xf3\x02\xe0\x1c", "looks like a wrong baud rate"),
     ] {
-        for names_first in [false, true] {
-            let said = fault(text, names_first);
+        for is_file in [false, true] {
+            let said = fault(text, is_file);
             assert!(said.contains(words), "{said}");
         }
     }
+    let dated = fault(b"time,light\n05.03.2024 09:26:53,0.1,ok\n", true);
+    assert!(dated.contains("line 1 names the columns time,light"), "{dated}");
+    let more = fault(b"time,light\n1,2,3\n", true);
+    assert!(more.contains("line 1 names the columns time,light"), "{more}");
+    assert!(fault(b"Ready.\n1,2,3\n", true).contains("--names"));
     let said = fault(&[0xe0; 5000], false);
     assert!(said.contains("looks like a wrong baud rate"), "{said}");
     // A device that sends numbers for long, and never names.
