@@ -352,6 +352,15 @@ fn bad_sources_are_said_with_what_to_do() {
     kept.expect(0).says("look like a converter's counts");
     let scaled = ["live", "--source", "counts.csv", "--model", "m.json", "--volts-per-count", "10/65536", "-q"];
     dir.lunula(&scaled).expect(0);
+    // A model of counts reads counts.
+    let trained: String = (0..200).map(|k| format!("{k},{},{}\n", 6000 + 7 * k, -0.01 * f64::from(k))).collect();
+    dir.write("trained.csv", format!("time_s,P1,Fz_N\n{trained}"));
+    dir.train("trained.csv", "Fz_N", "counts.json", &["-q"]).expect(0);
+    dir.words("live --source counts.csv --model counts.json").expect(0).never_says("counts");
+    // What a terminal wrote to a file of a device that starts.
+    dir.write("boot.csv", format!("ets Jun  8 2016 00:22:57\nrst:0x1 (POWERON),boot:0x13\n{}", recording(1.0)));
+    dir.words("record --source boot.csv --out boot.kept.csv").expect(0).says("100 rows at 100.0 Hz");
+    judge(&dir, "boot.csv", &[]).expect(0);
     let mut garbage = start(&dir, &["live", "--source", "-", "--model", "m.json"]);
     let noise: Vec<u8> = (0..9000u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 24) as u8 | 0x80).collect();
     let to = garbage.child.stdin.as_mut().expect("open");
@@ -378,8 +387,9 @@ fn a_session_that_answers_nothing_says_why_and_leaves_no_answers_of_another() {
     let live = |source: &str, more: &[&str]| {
         dir.lunula(&[&["live", "--source", source, "--model", "m.json", "--out", "k.csv", "-q"], more].concat())
     };
-    live("r.csv", &[]).expect(0);
-    assert!(dir.table("k.predicted.csv").len() > 200);
+    live("r.csv", &[]).expect(0).never_says("not recorded");
+    let [rows, answers] = ["k.csv", "k.predicted.csv"].map(|name| dir.table(name).len());
+    assert!(rows == 300 && answers == 300, "{rows} {answers}");
     live("off.csv", &["--replace"]).expect(1).says("failed: no row is answered: the LED was on in no row");
     assert!(dir.table("k.predicted.csv").is_empty());
     live("on.csv", &["--replace"]).expect(1).says("no row is answered: the LED was never off");
@@ -605,6 +615,22 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     let part = dir.parsed("ev-part.csv/switch.json");
     let counts = ["presses", "missed", "false_switches", "not_judged"].map(|count| part[count].as_u64().unwrap());
     assert_eq!((counts, dir.table("ev-part.csv/presses.csv").len()), ([8, 0, 0, 2], 8));
+    // Single cells that are empty cost nothing, but for contacts that begin or end there.
+    write("cells.csv", &|t_s, light, force| where_known(t_s, light, force, (100.0 * t_s).round() % 200.0 != 120.0));
+    judge(&dir, "cells.csv", &[]).expect(0).never_says("contact is not known");
+    let cells = dir.parsed("ev-cells.csv/switch.json");
+    assert_eq!(["presses", "missed", "cut_off"].map(|count| cells[count].as_u64().unwrap()), [10, 0, 0]);
+    // A contact switch that is logged ten times a second.
+    dir.write(
+        "held.csv",
+        altered(60.0, "time_s,P1,contact", |t_s, light, _| {
+            let at_s = (10.0 * t_s + 1e-6).floor() / 10.0;
+            format!("{t_s},{light},{}\n", u8::from(pressing(at_s + 0.037 * (at_s / 2.0).floor()) > 0.01))
+        }),
+    );
+    dir.words("switch evaluate sw.toml held.csv --model m.json --contact contact --out ev-held")
+        .expect(0)
+        .says("contact changes in each 10th row only, 0.10 s");
     write("odd.csv", &|t_s, light, force| where_known(t_s, light, force, (100.0 * t_s).round() % 2.0 == 0.0));
     judge(&dir, "odd.csv", &[]).expect(2).says("1000 of 2000 rows say whether the finger touches (`Fz_N<-0.01`)");
     write("none.csv", &|t_s, light, force| where_known(t_s, light, force, false));

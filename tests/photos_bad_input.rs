@@ -613,7 +613,8 @@ fn outlines_of_no_photograph_and_drawn_nails_left_out_are_said() {
     dir.write("set/instances.json", "{\"images\": [], \"annotations\": [], \"categories\": []}");
     dir.write("set/annotations.xml", "<?xml version=\"1.0\"?>\n<annotations><version>1.1</version></annotations>");
     for (file, program) in [("instances.json", "COCO"), ("annotations.xml", "CVAT")] {
-        let said = format!("warning: {file} holds annotations of {program}, which are not read; export them as LabelMe");
+        let said =
+            format!("warning: {file} holds annotations of {program}, which are not read; export them as LabelMe");
         dir.lunula(&job).expect(0).says(&said);
         dir.lunula(&[&job[..], &["--outline", "detected"]].concat()).never_says("annotations of");
         std::fs::remove_file(dir.path(&format!("set/{file}"))).expect("removed");

@@ -72,7 +72,8 @@ pub enum AnnotationFault {
 }
 
 /// What to do where another program's annotations are found.
-pub(crate) const EXPORT: &str = "export them as LabelMe files, one a photograph and called as it, or as masks (--masks)";
+pub(crate) const EXPORT: &str =
+    "export them as LabelMe files, one a photograph and called as it, or as masks (--masks)";
 
 /// What a LabelMe file says of one photograph.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@
 //! Out: the contacts, with the time that was looked at. Two contacts closer than [`MERGED_S`] are one: a force that
 //! hovers at its threshold is no second touch. Rows further apart than [`LONGEST_GAP_S`] have a gap between them, in
 //! which nothing is known: a contact that reaches one has no known end there. Between two rows contact is known where
-//! both say it, or where one that says the same comes less than [`MERGED_S`] before, whatever is missing between them.
+//! both say it, or where less than [`MERGED_S`] is missing between them and they say the same, the first one known.
 
 use serde::Serialize;
 
@@ -50,7 +50,10 @@ impl Contacts {
             return;
         }
         let row_before = self.last.filter(|(last_s, _)| !begins && (0.0..=LONGEST_GAP_S).contains(&(time_s - last_s)));
-        let says_the_same = |(said_s, said): &(f64, bool)| touches == Some(*said) && time_s - said_s < MERGED_S;
+        let says_the_same = |(said_s, said): &(f64, bool)| {
+            let is_known = self.known.last().is_some_and(|known| known[1] == *said_s);
+            is_known && touches == Some(*said) && time_s - said_s < MERGED_S
+        };
         let said = self.said.filter(|said| row_before.is_some() && says_the_same(said));
         let before = said.map(|(said_s, said)| (said_s, Some(said))).or(row_before);
         let known_before = before.and_then(|(_, touched)| touched);

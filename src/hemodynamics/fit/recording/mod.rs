@@ -159,6 +159,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         // The same rows for every photodiode.
         unknown = voltages.warning;
         of_photodiodes.extend(doubts::cut_off(&one.name, &voltages.values_v));
+        of_photodiodes.extend(photodiodes::takes_few_values(&one.name, &voltages.values_v));
         traces.push(Trace::new(one.unit, voltages.values_v));
         photodiodes.push(one);
     }
@@ -228,6 +229,9 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             warnings.extend(loads.any(turns).then(|| rows.like_a_time(&used)).flatten());
         }
     }
+    let loads = needed.iter().filter(|name| **name != TIME);
+    let unloaded = loads.filter_map(|name| signs::never_rests(name, read.get(name).unwrap_or_default()));
+    let notes = rows.notes().into_iter().chain(unloaded).collect();
     Ok(ReadRecording {
         columns: names.to_vec(),
         path: path.to_owned(),
@@ -240,7 +244,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         missing,
         faults,
         warnings,
-        notes: rows.notes(),
+        notes,
     })
 }
 

@@ -193,13 +193,7 @@ impl Opening {
         Ok(Some(Header { names, separator, meaning, is_row }))
     }
 
-    fn choose(
-        &mut self,
-        names: Vec<String>,
-        separator: Separator,
-        number: u64,
-        are_all_names: bool,
-    ) -> Option<Header> {
+    fn choose(&mut self, names: Vec<String>, separator: Separator, number: u64, are_all_names: bool) -> Option<Header> {
         match Meaning::of(&names, number, &mut self.naming) {
             Ok(meaning) => Some(Header { names, separator, meaning, is_row: false }),
             Err(fault) => {
