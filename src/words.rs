@@ -30,6 +30,11 @@ pub trait Words: Copy + PartialEq + Send + Sync + 'static {
     /// Each choice, its word and what it means; the meaning may be empty.
     const WORDS: &'static [(Self, &'static str, &'static str)];
 
+    /// All, in the order of their words.
+    fn all() -> impl Iterator<Item = Self> {
+        Self::WORDS.iter().map(|one| one.0)
+    }
+
     /// As the command line and pipeline files have it.
     #[must_use]
     fn word(self) -> &'static str {

@@ -11,13 +11,11 @@ use crate::words::Words;
 /// How light depends on the capillaries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "their words say it")]
 pub enum OpticsChoice {
-    /// Equation 6.
     #[default]
     BeerLambert,
-    /// Equation 8.
     Quadratic,
-    /// The tangent of equation 6 at rest.
     Linear,
 }
 

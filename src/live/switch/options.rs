@@ -49,32 +49,14 @@ pub struct TuneOptions {
 }
 
 /// What predictions beyond the trained voltages do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OutsideChoice {
-    /// They let go.
-    Release,
-    /// They are passed over, and the watchdog runs.
-    Ignore,
-    /// They count as any other.
-    Count,
-}
+pub type OutsideChoice = Option<Outside>;
 
 impl Words for OutsideChoice {
     const WORDS: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Release, "release", "they let go"),
-        (Self::Ignore, "ignore", "they are passed over, and the watchdog runs"),
-        (Self::Count, "count", "they count as any other"),
+        (Some(Outside::Release), "release", "they let go"),
+        (Some(Outside::Ignore), "ignore", "they are passed over, and the watchdog runs"),
+        (None, "count", "they count as any other"),
     ];
-}
-
-impl From<OutsideChoice> for Option<Outside> {
-    fn from(choice: OutsideChoice) -> Self {
-        match choice {
-            OutsideChoice::Release => Some(Outside::Release),
-            OutsideChoice::Ignore => Some(Outside::Ignore),
-            OutsideChoice::Count => None,
-        }
-    }
 }
 
 fn part(text: &str) -> Result<f64, String> {

@@ -45,7 +45,7 @@ pub fn tune_switch(
         false_per_hour: options.false_per_hour,
         missed_share: options.missed,
         watchdog_s: options.watchdog,
-        outside: options.outside.into(),
+        outside: options.outside,
     };
     let of_goal = SwitchConfig { watchdog_s: goal.watchdog_s, ..SwitchConfig::of(1.0, 0.0) };
     of_goal.check().map_err(|why| LiveError::Request(why.to_string()))?;

@@ -15,15 +15,12 @@ pub const F_MIN_N: f64 = 0.5;
 
 /// Which model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[allow(missing_docs, reason = "their words say it")]
 pub enum ModelChoice {
-    /// Equation 9.
     #[default]
     Linear,
-    /// Equation 16.
     Quadratic,
-    /// Equations 17 and 18.
     Network,
-    /// Modes of the nail's picture.
     Eigennails,
 }
 
@@ -56,16 +53,12 @@ impl Words for OnScores {
 
 /// What is held out in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "their words say it")]
 pub enum ByChoice {
-    /// Each recording.
     Trajectory,
-    /// All recordings that follow one prompted path.
     Path,
-    /// All recordings of a subject's session.
     Session,
-    /// All recordings of a subject.
     Subject,
-    /// Shuffled rows.
     Rows,
 }
 

@@ -11,46 +11,27 @@ use lunula::words::Words;
 
 /// A part of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[allow(missing_docs, reason = "their words say it")]
 pub enum Part {
-    /// One nail under rising force (Fig. 5).
     Rising,
-    /// A sensor and a camera on one nail, the camera's green.
     FilmGreen,
-    /// The same, the camera's green over red.
     FilmRatio,
-    /// Responses to normal force (3.3.2).
     Normal,
-    /// Responses to lateral shear (3.3.3).
     Lateral,
-    /// Responses to longitudinal shear (3.3.4).
     Longitudinal,
-    /// Responses to bending (3.3.5).
     Bending,
-    /// One subject's coloration (Fig. 51, 52).
     Typical,
-    /// Average coloration (4.2.2).
     Photos,
-    /// The hemodynamic model simulated (4.3.3).
     Section,
-    /// Slow and quick presses (4.3.4).
     Presses,
-    /// The calibration trajectory (5.2).
     Calibration,
-    /// The touch model on what it was trained on (5.3.1).
     TouchTraining,
-    /// The touch model on the third repetition.
     TouchValidation,
-    /// The touch model on random touching.
     TouchTest,
-    /// The touch model's modes (Fig. 98).
     Modes,
-    /// The posture model on the half that it was trained on (5.3.2).
     PostureTraining,
-    /// The posture model on the second half.
     PostureValidation,
-    /// Models compared over subjects (5.4, 5.5).
     Compare,
-    /// Trials of two methods of control (appendix C).
     Performance,
 }
 
@@ -81,11 +62,6 @@ impl Words for Part {
 }
 
 impl Part {
-    /// All, in the thesis' order.
-    pub fn all() -> impl Iterator<Item = Self> {
-        Self::WORDS.iter().map(|one| one.0)
-    }
-
     /// Its tables, which the page links to.
     #[must_use]
     pub fn tables(self) -> &'static [&'static str] {
