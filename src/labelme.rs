@@ -181,9 +181,6 @@ impl LabelMe {
     }
 
     /// The bytes of one file.
-    ///
-    /// # Errors
-    /// [`Error::Read`] and [`Error::TooLong`].
     pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
         let refused = |source: io::Error| Error::Read { path: path.to_owned(), source };
         let mut bytes = Vec::new();
@@ -195,9 +192,6 @@ impl LabelMe {
     }
 
     /// What the bytes of the file at `path` say.
-    ///
-    /// # Errors
-    /// [`Error::Parse`].
     pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         serde_json::from_slice(text).map_err(|source| Error::Parse { path: path.to_owned(), source })

@@ -66,9 +66,6 @@ fn png_of_levels(levels: &GrayImage, first: [u8; 3]) -> Result<Vec<u8>, ImageErr
 }
 
 /// Encodes samples, of 16 bits in the machine's order, at the end of `png`.
-///
-/// # Errors
-/// As [`png()`].
 pub(crate) fn encode_png(
     samples: &[u8],
     [width, height]: [u32; 2],

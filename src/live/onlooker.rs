@@ -35,9 +35,6 @@ pub(crate) trait Onlooker {
     fn state(&mut self, is_force: bool, condition: Condition);
 
     /// Time has passed: nanoseconds of the host's clock.
-    ///
-    /// # Errors
-    /// What it writes itself can't be written.
     fn tick(&mut self, now_ns: u64) -> Result<(), LiveError>;
 
     /// Whether nothing more is wanted of the session.

@@ -145,9 +145,6 @@ impl Log {
 
 /// The columns of a recording of the Lab Streaming Layer as they are, in the order of their names; nothing is read
 /// into them.
-///
-/// # Errors
-/// As [`Log::read`].
 #[cfg_attr(not(feature = "xdf"), allow(unused_variables))]
 pub(crate) fn recorded_stream(path: &Path, columns: &Columns) -> Result<(Vec<String>, Vec<Vec<f64>>), LogError> {
     #[cfg(feature = "xdf")]

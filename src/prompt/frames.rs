@@ -145,9 +145,6 @@ impl Frames {
     }
 
     /// A frame; what was prompted at its time, and the step's name.
-    ///
-    /// # Errors
-    /// The table can't be written.
     pub(crate) fn push(&mut self, frame: &Frame, prompted: Option<Prompted>, step: &str) -> Result<(), LiveError> {
         let measured = frame.force_s.and_then(|force_s| self.measured(force_s));
         let off_px = frame.off_px(prompted, measured);
@@ -219,9 +216,6 @@ impl Frames {
     }
 
     /// Ends the table. Whether there is one.
-    ///
-    /// # Errors
-    /// It could not be written.
     pub(crate) fn finish(&mut self) -> Result<bool, LiveError> {
         self.table.take().map_or(Ok(false), Growing::finish)
     }

@@ -28,9 +28,6 @@ pub(crate) struct Planes {
 
 impl Network {
     /// A network from an ONNX file's bytes whose weights were packed to 16 bits, see [`unpacked`].
-    ///
-    /// # Errors
-    /// [`VisionError`] where they are none that OpenCV reads.
     pub(crate) fn of_packed(packed: &[u8]) -> Result<Self, VisionError> {
         let onnx = unpacked(packed).ok_or_else(|| VisionError::lacking("readNetFromONNX", "the file is cut"))?;
         let network = Self { onnx: Vector::from_slice(&onnx), idle: Mutex::default() };

@@ -98,9 +98,6 @@ pub(crate) fn region_mean(picture: &Array2<f32>, name: &str) -> Option<f64> {
 }
 
 /// Numbers of the average maps in a folder of `lunula photos`; what is missing is not reported.
-///
-/// # Errors
-/// A map that can't be read.
 pub(crate) fn coloration_numbers(photos: &Path) -> anyhow::Result<Numbers> {
     let mut numbers = Numbers::default();
     let map = |pose: Pose, what: &str| -> anyhow::Result<Option<Map>> {

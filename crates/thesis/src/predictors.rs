@@ -155,9 +155,6 @@ pub(crate) fn compare_numbers(folder: &Path) -> Result<Numbers, TableError> {
 /// Of a performance's folder: `operators`; `first_over`, the time per decision of the first trial over the baseline's;
 /// `level_over`, the trials to level off over the baseline's; `mean_over`, over all trials; of the first method that is
 /// compared.
-///
-/// # Errors
-/// A file that can't be read or has another form.
 pub(crate) fn performance_numbers(folder: &Path) -> anyhow::Result<Numbers> {
     let mut numbers = Numbers::default();
     let path = folder.join("performance.json");

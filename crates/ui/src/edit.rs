@@ -35,9 +35,6 @@ pub trait Editing: Send + Sync + 'static {
     fn photo(&self) -> Option<Vec<u8>>;
 
     /// The nail as it would come out, as a PNG; `rough`, in little time, or as it would.
-    ///
-    /// # Errors
-    /// Why it would not, for a person.
     fn normalized(&self, rough: bool) -> Result<Vec<u8>, String>;
 }
 

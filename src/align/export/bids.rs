@@ -28,9 +28,6 @@ pub(crate) struct BidsNames {
 
 impl BidsNames {
     /// Checks the names: letters and digits of ASCII; a subject is needed.
-    ///
-    /// # Errors
-    /// [`ExportError::Label`].
     pub(crate) fn new(
         subject: Option<&str>,
         session: Option<&str>,

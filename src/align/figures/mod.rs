@@ -22,9 +22,6 @@ const LONG_S: f64 = 1e5;
 /// Draws what the tie leaves over at each frame that it was found by, with the tie's standard error and, of a clock,
 /// half its last digit's step: so much a reading leaves open. Draws nothing and says so where there is nothing left
 /// over to be drawn.
-///
-/// # Errors
-/// A file that can't be written.
 pub(super) fn draw_tie(tie: &Tie, posture: &Posture, png: &Path, svg: &Path) -> anyhow::Result<bool> {
     let mut residuals: Vec<[f64; 2]> =
         tie.residuals_s.iter().copied().filter(|r| r[0].is_finite() && r[1].is_finite()).collect();
@@ -107,9 +104,6 @@ fn with_error(value: f64, sd: f64, decimals: usize) -> String {
 
 /// Draws the photodiodes, each in a lane of its own from its lowest to its highest value, and below them the labels
 /// with their standard errors, on the log's time. Where a label is missing it is grey.
-///
-/// # Errors
-/// A file that can't be written.
 pub(super) fn draw_labels(samples: &Samples, labels: &Labels, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let first_s = samples.time_s.first().copied().unwrap_or(0.0);
     let base_s = if first_s.abs() > LONG_S { first_s.floor() } else { 0.0 };

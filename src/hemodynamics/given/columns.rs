@@ -66,9 +66,6 @@ pub(in crate::hemodynamics) struct Voltages {
 
 impl Rows {
     /// Reads a file: a table, or what `log` says is a log.
-    ///
-    /// # Errors
-    /// A file that can't be read.
     pub(in crate::hemodynamics) fn read(path: &Path, log: &LogReading) -> Result<Self, HemodynamicsError> {
         if !log.is_log(path)? {
             return Self::table(path);
@@ -80,9 +77,6 @@ impl Rows {
     }
 
     /// Reads a table.
-    ///
-    /// # Errors
-    /// A table that can't be read.
     pub(in crate::hemodynamics) fn table(path: &Path) -> Result<Self, HemodynamicsError> {
         let table = Table::read(path)?;
         Ok(Self { path: path.to_owned(), names: table.names().to_vec(), from: Source::Table(table) })

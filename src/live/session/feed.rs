@@ -47,9 +47,6 @@ pub(super) struct FeedHealth {
 
 impl<'a> Feed<'a> {
     /// Opens a source that has these columns at least.
-    ///
-    /// # Errors
-    /// A source that can't be opened.
     pub(super) fn open(
         source: &'a Address,
         options: &StreamOptions,

@@ -115,9 +115,6 @@ impl<'a> Lane<'a> {
     }
 
     /// Takes what has come from the force transducer.
-    ///
-    /// # Errors
-    /// As [`poll`](Self::poll).
     pub(super) fn poll_force(&mut self, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         self.force.as_mut().map_or(Ok(()), |feed| self.work.take(feed, true, shared))
     }
@@ -136,9 +133,6 @@ impl<'a> Lane<'a> {
     }
 
     /// Time has passed.
-    ///
-    /// # Errors
-    /// Results that can't be written.
     pub(super) fn advance(&mut self, now_ns: u64, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         let Some(decide) = self.work.decide.as_mut().filter(|_| self.feed.stream.is_live()) else { return Ok(()) };
         decide.advance(self.feed.stream.stream_now_s(now_ns), &mut shared.outputs)?;

@@ -16,9 +16,6 @@ use crate::phantom::request::LogRequest;
 use crate::table;
 
 /// Opens one of a session's sources at `now_ns` of its clock.
-///
-/// # Errors
-/// A source that can't be opened.
 pub(super) fn open_stream(
     source: &Address,
     options: &StreamOptions,

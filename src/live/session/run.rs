@@ -134,9 +134,6 @@ pub fn record(
 }
 
 /// Records what somebody who looks on wants recorded, of one finger.
-///
-/// # Errors
-/// As [`live`]; several fingers.
 pub(crate) fn attend<'a>(
     options: &'a StreamOptions,
     files: &'a SessionFiles,

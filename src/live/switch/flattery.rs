@@ -15,9 +15,6 @@ use crate::predictor::{DataFile, RowOptions, Wanted, again, open_models, read_fi
 const CONTACT: &str = "contact";
 
 /// What to say of them.
-///
-/// # Errors
-/// Models that can't be used.
 pub(super) fn flattery(inputs: &SwitchInputs, options: &ContactOptions) -> Result<Vec<String>, LiveError> {
     let SwitchInputs { recordings, models } = inputs;
     let mut said = copies(recordings.iter().map(|one| (one.name.clone(), one.path.as_path())));

@@ -77,9 +77,6 @@ pub(in crate::log) fn open(path: &Path) -> Result<Vec<u8>, LogError> {
 
 impl Layout {
     /// Finds the header.
-    ///
-    /// # Errors
-    /// What is wrong and what to do.
     pub(in crate::log) fn find(text: &[u8]) -> Result<Self, String> {
         let (mut at, mut line) = (0, 0);
         let (mut comment, mut declared) = (None, None);

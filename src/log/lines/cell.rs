@@ -23,9 +23,6 @@ impl Numbers {
     }
 
     /// The number in a cell without space around it; NaN where it is missing.
-    ///
-    /// # Errors
-    /// What is wrong and what to do.
     pub(in crate::log) fn read(&mut self, cell: &[u8]) -> Result<f64, String> {
         if cell.is_empty() {
             return Ok(f64::NAN);
@@ -67,9 +64,6 @@ impl Numbers {
 }
 
 /// Whether the LED was on; none where it is missing.
-///
-/// # Errors
-/// What is wrong and what to do.
 pub(crate) fn led(cell: &[u8]) -> Result<Option<bool>, String> {
     wire::led(cell).map_err(|why| format!("`{}` is {why}; correct it", shown(cell)))
 }

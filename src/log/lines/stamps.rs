@@ -98,9 +98,6 @@ pub(in crate::log) struct Stamps {
 
 impl Stamps {
     /// Adds the stamp in a cell without space around it.
-    ///
-    /// # Errors
-    /// What is wrong and what to do.
     pub(in crate::log) fn push(&mut self, cell: &[u8], numbers: &mut Numbers) -> Result<(), String> {
         if is_missing(cell) {
             self.time.push(f64::NAN);

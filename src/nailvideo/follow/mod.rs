@@ -118,9 +118,6 @@ impl Follower {
     }
 
     /// Where the nail is in the next frame.
-    ///
-    /// # Errors
-    /// [`Lost`] where that is not known.
     pub(in crate::nailvideo) fn step(&mut self, frame: &Frame<'_>) -> Result<Place, Lost> {
         let time_s = frame.time_s;
         match self.state {

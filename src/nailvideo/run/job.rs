@@ -56,9 +56,6 @@ const PICTURE: &str = "nail.png";
 const OUTLINE: &str = "nail.json";
 
 /// Reads where the photodiodes are; without a file the thesis' eight.
-///
-/// # Errors
-/// A file that can't be read, or is none.
 pub(in crate::nailvideo) fn positions(path: Option<&Path>) -> Result<Positions, NailVideoError> {
     let Some(path) = path else { return Ok(Positions::thesis()) };
     let refused = |why: String| NailVideoError::Positions { path: path.to_owned(), why };

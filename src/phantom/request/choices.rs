@@ -29,9 +29,6 @@ pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Traj
 }
 
 /// Photodiodes' places from a file: TOML, or JSON where it ends in `.json`.
-///
-/// # Errors
-/// A file that can't be read or is no list of places.
 pub(in crate::phantom) fn positions(path: &Path) -> anyhow::Result<Positions> {
     let text = input::read_text(path)?;
     let json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));

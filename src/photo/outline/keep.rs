@@ -76,9 +76,6 @@ impl SavedOutlines {
 }
 
 /// Saves detected outlines of the photographs of `set`, in `folder` or beside them, as far as `places`.
-///
-/// # Errors
-/// [`WriteError`] where a file can't be written.
 pub(in crate::photo) fn keep_outlines(
     detected: &[DetectedOutline],
     set: &PhotoSet,

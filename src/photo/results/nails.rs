@@ -176,9 +176,6 @@ impl NailTable {
     }
 
     /// From the tables of parts, in the order that one run would have given: by pose, subject, file, nail.
-    ///
-    /// # Errors
-    /// [`MergeError::Nails`].
     pub(in crate::photo) fn of_parts(parts: &[PathBuf]) -> Result<Self, MergeError> {
         let mut rows = Vec::new();
         for (at, part) in parts.iter().enumerate() {

@@ -21,9 +21,6 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// Of maps; `truth` is a folder of `<pose>-mean.npy` and `<pose>-sd.npy`.
-    ///
-    /// # Errors
-    /// [`MergeError::Truth`].
     pub(super) fn of(partials: &Partials, truth: Option<&Path>) -> Result<Self, MergeError> {
         let (mut mean, mut sd, mut spread) = (Rms::default(), Rms::default(), Rms::default());
         for (pose, sums) in &partials.poses {

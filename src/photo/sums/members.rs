@@ -63,9 +63,6 @@ impl Members {
     }
 
     /// Reads a list.
-    ///
-    /// # Errors
-    /// Where there is none that can be read: in words.
     pub(super) fn read(file: &Path) -> Result<Self, String> {
         let text = input::read(file).map_err(|why| why.to_string())?;
         serde_json::from_slice(&text).map_err(|why| why.to_string())

@@ -44,9 +44,6 @@ fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
 
 impl Npz {
     /// Reads the directory.
-    ///
-    /// # Errors
-    /// In words, where there is none.
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         let read = |why: std::io::Error| why.to_string();
         let mut file = input::open_regular(path).map_err(read)?;

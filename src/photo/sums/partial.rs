@@ -110,9 +110,6 @@ impl Partials {
 }
 
 /// A file of one pose's sums.
-///
-/// # Errors
-/// Where the archive can't be made.
 pub(in crate::photo) fn bytes(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
     let shape = (sums.size, sums.size);
     let mut npz = archive(20 * sums.sum.len());
@@ -124,9 +121,6 @@ pub(in crate::photo) fn bytes(pose: &str, sums: &Sums, with: &Normalization) -> 
 }
 
 /// The same; one subject's as its levels.
-///
-/// # Errors
-/// As [`bytes`].
 pub(in crate::photo) fn bytes_of_part(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
     if sums.subjects.len() == 1 { bytes_of_one(pose, sums, with) } else { bytes(pose, sums, with) }
 }

@@ -107,9 +107,6 @@ enum Sort {
 }
 
 /// Looks at a folder.
-///
-/// # Errors
-/// Where it can't be read.
 pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     input::list(folder)?;
     let mut found = Inventory::default();

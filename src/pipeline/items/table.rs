@@ -19,9 +19,6 @@ pub(super) struct Rows {
 }
 
 /// Reads the table that the pipeline file calls `named`.
-///
-/// # Errors
-/// Where it can't be read.
 pub(super) fn read(named: &str, world: &World<'_>) -> Result<Rows, String> {
     let inside = named.strip_prefix("{phantom}/").map(plain);
     let table = match &inside {

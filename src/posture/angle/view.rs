@@ -73,9 +73,6 @@ impl View {
     }
 
     /// What to say of a layout's camera beside a video, whose pictures it may not be measured on.
-    ///
-    /// # Errors
-    /// It was measured on pictures of another size, in words.
     pub(crate) fn doubt(layout: &Layout, info: &Info) -> Result<Option<String>, String> {
         let Some(camera) = &layout.camera else { return Ok(None) };
         let (width, height) = info.turn.shown_size((info.format.width, info.format.height));

@@ -30,9 +30,6 @@ pub(in crate::predictor) struct Modes<'a> {
 }
 
 /// Draws a column of panels for each mode: the contributions of the targets above those of the photodiodes.
-///
-/// # Errors
-/// A file that can't be written.
 pub(in crate::predictor) fn draw_modes(modes: &Modes<'_>, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let count = modes.values.len();
     let unit = if modes.unit.is_empty() { String::new() } else { format!(" {}", modes.unit) };

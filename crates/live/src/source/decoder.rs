@@ -14,9 +14,6 @@ pub trait Rows: Send {
 
     /// Writes the next row into `cells`, one for each column and NaN where missing, and its `texts`; false after the
     /// last.
-    ///
-    /// # Errors
-    /// What is wrong, and what to do.
     fn next(&mut self, cells: &mut [f64], texts: &mut [Vec<u8>]) -> Result<bool, String>;
 
     /// Begins again, or says that it can't.

@@ -145,9 +145,6 @@ impl Bytes {
     }
 
     /// Reads a piece; false at the end of the file.
-    ///
-    /// # Errors
-    /// The file cannot be read any more.
     pub(in crate::source) fn more(&mut self) -> Result<bool, SourceFault> {
         self.at = 0;
         self.piece.resize(PIECE, 0);
@@ -162,9 +159,6 @@ impl Bytes {
     }
 
     /// Begins again.
-    ///
-    /// # Errors
-    /// The file cannot be read again.
     pub(in crate::source) fn rewind(&mut self) -> Result<(), SourceFault> {
         self.at = 0;
         self.piece.clear();

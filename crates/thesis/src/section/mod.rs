@@ -97,9 +97,6 @@ pub fn section_4_3(out: &Path) -> anyhow::Result<String> {
 }
 
 /// Draws Fig. 76 to 78 into `out`.
-///
-/// # Errors
-/// Where a file can't be written.
 pub(crate) fn section_simulations(out: &Path) -> anyhow::Result<SectionText> {
     let staging = Staging::new(out)?;
     let mut text = SectionText::default();

@@ -96,9 +96,6 @@ impl Person {
     }
 
     /// The photodiode of the pressed place over a force from 0 to 2 N and back, slowly: an average of three cycles.
-    ///
-    /// # Errors
-    /// A model without an answer.
     pub(crate) fn slowly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
         let force_n: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
         let [proximal, distal] = pressures(pressed, &force_n);
@@ -107,9 +104,6 @@ impl Person {
     }
 
     /// The photodiode of the pressed place as the finger presses quickly, holds, and lets go quickly.
-    ///
-    /// # Errors
-    /// A model without an answer.
     pub(crate) fn quickly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
         let times_s: Vec<f64> =
             (0..=(END_S * f64::from(RATE)) as u32).map(|k| f64::from(k) / f64::from(RATE)).collect();

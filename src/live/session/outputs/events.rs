@@ -20,9 +20,6 @@ pub(crate) struct EventsFile {
 
 impl EventsFile {
     /// Makes it; none where none is asked for.
-    ///
-    /// # Errors
-    /// It can't be made.
     pub(crate) fn create(path: Option<&Path>) -> Result<Option<Self>, LiveError> {
         let Some(path) = path else { return Ok(None) };
         let to = create_growing(path, true).map_err(|why| LiveError::Write { path: path.to_owned(), why })?;

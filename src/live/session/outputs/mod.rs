@@ -107,9 +107,6 @@ impl Outputs {
     }
 
     /// Rows are about to come: readers hear the names, events get their file.
-    ///
-    /// # Errors
-    /// A file that can't be made.
     pub(super) fn begin(&mut self) -> Result<(), LiveError> {
         if std::mem::replace(&mut self.begun, true) {
             return Ok(());
@@ -121,9 +118,6 @@ impl Outputs {
     }
 
     /// A row of answers.
-    ///
-    /// # Errors
-    /// A recording or a stream that can't be written.
     pub(super) fn row(&mut self, row: &AnswerRow<'_>) -> Result<(), LiveError> {
         if let Some(view) = &mut self.view {
             view.sample(row.finger.map_or(0, |(_, place)| place), &row.seen);

@@ -42,9 +42,6 @@ pub struct PointerCounts {
 }
 
 /// Reads a `mouse.toml`.
-///
-/// # Errors
-/// A file that can't be read, or keys that are wrong.
 pub(crate) fn read_mouse(path: &Path) -> Result<Config, LiveError> {
     let refused = |what: String| LiveError::Config { path: path.to_owned(), what };
     let text = crate::input::read_text(path).map_err(|why| refused(why.to_string()))?;

@@ -75,9 +75,6 @@ impl<'a> Bytes<'a> {
 }
 
 /// The streams of a file, in the order of their headers, and notes.
-///
-/// # Errors
-/// What is wrong and where.
 pub(super) fn streams(file: &[u8]) -> Result<(Vec<Stream>, Vec<String>), String> {
     let rest = file.strip_prefix(b"XDF:").ok_or("is no XDF file: it does not begin with `XDF:`")?;
     let mut bytes = Bytes(rest);

@@ -20,9 +20,6 @@ pub(in crate::source) struct Connector {
 
 impl Connector {
     /// Starts a thread that opens ports by `open` when it is asked to.
-    ///
-    /// # Errors
-    /// The system has no thread or socket for it.
     pub(in crate::source) fn start(
         mut open: impl FnMut() -> Result<Port, String> + Send + 'static,
     ) -> std::io::Result<Self> {

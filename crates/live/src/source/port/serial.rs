@@ -9,9 +9,6 @@ use rustix::termios::{ControlModes, OptionalActions, ioctl_tiocexcl, isatty, tcg
 use super::Port;
 
 /// Opens a serial port: 8 data bits, no parity, one stop bit, no flow control, nothing translated.
-///
-/// # Errors
-/// What is wrong, and what to do.
 pub(in crate::source) fn open_serial(path: &Path, baud: u32) -> Result<Port, String> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let fd = open(path, flags, Mode::empty()).map_err(|why| words(why, Path::new("/dev")))?;

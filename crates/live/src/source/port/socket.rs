@@ -16,9 +16,6 @@ const PEER_GONE: Duration = Duration::from_secs(1);
 const PEER_TRIES: u32 = 3;
 
 /// Connects to a server at `HOST:PORT`.
-///
-/// # Errors
-/// What is wrong, and what to do.
 pub(in crate::source) fn connect_tcp(to: &str) -> Result<Port, String> {
     let addresses = to.to_socket_addrs().map_err(|why| format!("is not known ({why}); correct the host's name"))?;
     let mut last = "has no address; correct the host's name".to_owned();
@@ -56,9 +53,6 @@ fn settled(stream: TcpStream) -> Result<Port, String> {
 }
 
 /// Listens at `ADDRESS:PORT`.
-///
-/// # Errors
-/// What is wrong, and what to do.
 pub(in crate::source) fn listen(at: &str) -> Result<TcpListener, String> {
     let listener = TcpListener::bind(at).map_err(|why| binding(&why))?;
     listener.set_nonblocking(true).map_err(|why| format!("cannot be set up ({why})"))?;
@@ -71,9 +65,6 @@ pub(in crate::source) fn accept(listener: &TcpListener) -> Option<Port> {
 }
 
 /// Takes datagrams at `ADDRESS:PORT`.
-///
-/// # Errors
-/// What is wrong, and what to do.
 pub(in crate::source) fn bind_udp(at: &str) -> Result<Port, String> {
     let socket = UdpSocket::bind(at).map_err(|why| binding(&why))?;
     socket.set_nonblocking(true).map_err(|why| format!("cannot be set up ({why})"))?;

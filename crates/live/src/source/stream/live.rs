@@ -49,9 +49,6 @@ enum Again {
 
 impl Live {
     /// Opens a place; it waits as long as a server takes to answer.
-    ///
-    /// # Errors
-    /// What is wrong, and what to do.
     pub(super) fn open(place: &Place, now_ns: u64) -> Result<Self, String> {
         let no_thread = |why: std::io::Error| format!("cannot be watched ({why})");
         let (port, again) = match place {

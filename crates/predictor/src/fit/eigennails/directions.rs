@@ -63,9 +63,6 @@ fn class([fx, fy, fz]: [f64; 3]) -> Option<usize> {
 }
 
 /// Recognizes directions; `forces`: rows x Fx, Fy, Fz; `groups`: rows each, left out in turn.
-///
-/// # Errors
-/// Why there are none, in words.
 pub(super) fn directions(
     whitened: &Array2<f64>,
     forces: &Array2<f64>,
