@@ -8,6 +8,7 @@
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Rect};
 use thiserror::Error;
 
+use crate::median::ends;
 use crate::photo::outline::{Axis, Outline, Unlike};
 
 /// The smallest box that can still be distinguished from a speck, pixels.
@@ -74,17 +75,9 @@ impl NailFrame {
     /// The box of `points` along and across `axis`, however small it is; NaN and infinite where there is no point.
     pub(crate) fn around(points: &[[f64; 2]], axis: Axis) -> Self {
         let (right, distal) = (axis.right(), axis.distal());
-        let mut low = [f64::INFINITY; 2];
-        let mut high = [f64::NEG_INFINITY; 2];
-        for [x, y] in points {
-            let across_along = [x * right[0] + y * right[1], x * distal[0] + y * distal[1]];
-            for k in 0..2 {
-                low[k] = low[k].min(across_along[k]);
-                high[k] = high[k].max(across_along[k]);
-            }
-        }
-        let (width_px, length_px) = (high[0] - low[0], high[1] - low[1]);
-        let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
+        let extents = [right, distal].map(|to| ends(points.iter().map(|[x, y]| x * to[0] + y * to[1])));
+        let [width_px, length_px] = extents.map(|[low, high]| high - low);
+        let middle = extents.map(|[low, high]| (low + high) / 2.0);
         let center_px = [middle[0] * right[0] + middle[1] * distal[0], middle[0] * right[1] + middle[1] * distal[1]];
         Self { center_px, length_px, width_px, axis }
     }
@@ -150,11 +143,7 @@ impl NailFrame {
 /// none where it is not, or goes on beyond the edge as far as an oval does.
 fn cut_off(outline: &[[f64; 2]], k: usize, inside: impl Fn(f64) -> f64) -> Option<f64> {
     let points: Vec<[f64; 2]> = outline.iter().map(|point| [inside(point[k]), point[1 - k]]).collect();
-    let ends = |axis: usize| {
-        let values = || points.iter().map(|point| point[axis]);
-        [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let ([nearest, farthest], [low, high]) = (ends(0), ends(1));
+    let [[nearest, farthest], [low, high]] = [0, 1].map(|axis| ends(points.iter().map(|point| point[axis])));
     if nearest > AT_EDGE_PX {
         return None;
     }
