@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::Relation;
 use crate::job::Keys;
+use crate::words::in_order;
 
 /// Combinations of one item of each relation.
 #[derive(Debug, Default)]
@@ -63,11 +64,7 @@ pub(in crate::pipeline) fn join(relations: &[&Relation]) -> Result<JoinedRows, (
             joined.unjoined.push(Unjoined { of: at, lacks: 0, keys: unused.into_iter().collect() });
         }
         joined.rows = rows;
-        for name in &relation.names {
-            if !joined.names.contains(name) {
-                joined.names.push(name.clone());
-            }
-        }
+        joined.names = in_order(joined.names.iter().chain(&relation.names).cloned());
     }
     Ok(joined)
 }

@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 
 use super::spec::Filter;
 use crate::job::{Facts, Keys};
+use crate::words::in_order;
 use catalogue::Catalogue;
 use pattern::{Listed, Tree};
 
@@ -120,11 +121,7 @@ impl Relation {
 
     /// Puts another relation's items after these.
     pub(super) fn extend(&mut self, other: Self) {
-        for name in other.names {
-            if !self.names.contains(&name) {
-                self.names.push(name);
-            }
-        }
+        self.names = in_order(self.names.drain(..).chain(other.names));
         self.items.extend(other.items);
         self.lacking.extend(other.lacking);
     }

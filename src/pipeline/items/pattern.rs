@@ -13,6 +13,7 @@ use std::fmt::Write;
 use regex_lite::Regex;
 
 use crate::job::Keys;
+use crate::words::in_order;
 
 pub(in crate::pipeline) use walk::{Disk, Listed, Match, Tree};
 
@@ -55,11 +56,7 @@ impl Pattern {
                 "**" => parts.push(Part::Folders),
                 said if said.contains(['*', '?', '[', ']', '{', '}']) => {
                     let wild = Wild::parse(said)?;
-                    for name in &wild.names {
-                        if !names.contains(name) {
-                            names.push(name.clone());
-                        }
-                    }
+                    names.extend(wild.names.iter().cloned());
                     parts.push(Part::Wild(wild));
                 }
                 plain => parts.push(Part::Plain(plain.to_owned())),
@@ -68,7 +65,7 @@ impl Pattern {
         if matches!(parts.last(), Some(Part::Folders)) {
             parts.push(Part::Wild(Wild::parse("*")?));
         }
-        Ok(Self { parts, names, folders })
+        Ok(Self { parts, names: in_order(names), folders })
     }
 
     /// The same, which in parts with places or wildcards takes `CSV` for `csv`; none where there is no such part.

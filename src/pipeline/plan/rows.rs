@@ -7,7 +7,7 @@ use crate::job::{Keys, Takes};
 use crate::pipeline::items::{Index, Item, JoinedRows, Missing, Relation, Unjoined, join, leaves_out};
 use crate::pipeline::spec::{From, Reference, Spec, StageSpec};
 use crate::toml_file::Fault;
-use crate::words::instead;
+use crate::words::{grouped, instead};
 
 /// A task to be: its keys, and for each role the items it takes, by position.
 pub(super) struct Row {
@@ -104,17 +104,10 @@ pub(super) fn stage_rows(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> 
 
 /// The rows that name no file for a stage, counted by reason, without those that a `where` leaves out.
 fn lacking_files(spec: &Spec, stage: &StageSpec, given: &[Relation]) -> Vec<Missing> {
-    let mut left_out: Vec<Missing> = Vec::new();
-    for row in given.iter().flat_map(|relation| &relation.lacking) {
-        if is_left_by_choice(spec, stage, &row.keys) {
-            continue;
-        }
-        match left_out.iter_mut().find(|missing| missing.reason == row.reason) {
-            Some(missing) => missing.count += 1,
-            None => left_out.push(Missing { reason: row.reason.clone(), count: 1 }),
-        }
-    }
-    left_out
+    let rows = given.iter().flat_map(|relation| &relation.lacking);
+    let rows = rows.filter(|row| !is_left_by_choice(spec, stage, &row.keys));
+    let missing = |(reason, rows): (&String, Vec<_>)| Missing { reason: reason.clone(), count: rows.len() };
+    grouped(rows.map(|row| (&row.reason, row))).into_iter().map(missing).collect()
 }
 
 /// Whether what has these keys is meant to be in no task of a stage: a `where` of what each task needs leaves it out,

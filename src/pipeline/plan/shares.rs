@@ -16,7 +16,7 @@ pub(super) fn shares(layout: &Layout<'_>, demands: &Demands) -> BTreeMap<usize, 
     let common = common(layout, &nodes);
     let mut whole: BTreeSet<usize> = BTreeSet::new();
     let mut groups = Groups::new(layout.nodes.len());
-    for stage in stages_of(layout, &nodes) {
+    for stage in nodes.chunk_by(|a, b| layout.nodes[*a].stage == layout.nodes[*b].stage) {
         let on_whole = |node: &usize| makers(&layout.nodes[*node]).any(|before| whole.contains(&before));
         let (late, now): (Vec<usize>, Vec<usize>) = stage.iter().partition(|node| on_whole(node));
         whole.extend(late);
@@ -55,19 +55,6 @@ fn common(layout: &Layout<'_>, nodes: &[usize]) -> BTreeSet<usize> {
         }
     }
     common
-}
-
-/// The nodes that are needed, stage by stage.
-fn stages_of(layout: &Layout<'_>, nodes: &[usize]) -> Vec<Vec<usize>> {
-    let mut stages: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
-    for &node in nodes {
-        let stage = layout.nodes[node].stage;
-        match stages.last_mut() {
-            Some((last, of_it)) if *last == stage => of_it.push(node),
-            _ => stages.push((stage, vec![node])),
-        }
-    }
-    stages.into_iter().map(|(_, nodes)| nodes).collect()
 }
 
 fn makers(node: &Node) -> impl Iterator<Item = usize> {

@@ -13,6 +13,7 @@ use crate::job::{Facts, Foreseen};
 use crate::pipeline::spec::said::in_keys;
 use crate::pipeline::store::standing::{Standing, Why};
 use crate::stages::Fate;
+use crate::words::grouped;
 
 /// How many reasons of one kind stand in a plan that people read.
 const SHOWN: usize = 3;
@@ -200,8 +201,7 @@ pub fn plan_text(stages: &[StagePlan]) -> String {
             let _ = writeln!(text, "{name:<width$}  {:<9} {count}{}", fate_said(line.fate), line.reason);
             name.clear();
         }
-        for (step, fate) in kinds_of(&stage.steps) {
-            let of: Vec<&PlanLine> = stage.steps.iter().filter(|line| line.step == step && line.fate == fate).collect();
+        for ((step, fate), of) in grouped(stage.steps.iter().map(|line| ((line.step.as_str(), line.fate), line))) {
             let tasks: usize = of.iter().map(|line| line.count).sum();
             let reasons = if of.len() == 1 {
                 of[0].reason.clone()
@@ -228,17 +228,6 @@ pub fn plan_text(stages: &[StagePlan]) -> String {
 
 fn head(stage: &StagePlan) -> String {
     if stage.stage == stage.job { stage.stage.clone() } else { format!("{} ({})", stage.stage, stage.job) }
-}
-
-/// The steps and fates that lines are of, each once, in order.
-fn kinds_of(lines: &[PlanLine]) -> Vec<(&str, PlanFate)> {
-    let mut kinds: Vec<(&str, PlanFate)> = Vec::new();
-    for line in lines {
-        if !kinds.contains(&(line.step.as_str(), line.fate)) {
-            kinds.push((&line.step, line.fate));
-        }
-    }
-    kinds
 }
 
 fn fate_said(fate: PlanFate) -> &'static str {

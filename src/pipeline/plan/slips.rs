@@ -97,33 +97,20 @@ fn not_taken<'a>(paths: &'a [String], taken: &BTreeSet<String>) -> Vec<&'a str> 
 }
 
 fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Vec<String> {
-    let left = not_taken(&items.in_other_case, taken);
-    let other_case = (!left.is_empty()).then(|| {
-        format!(
-            "`{pattern}` leaves out {} file(s) whose names differ only in the case of letters: {}; rename them, or \
-             write such a letter as [cC]",
-            left.len(),
-            listed(&left)
-        )
-    });
-    let left = not_taken(&items.in_other_format, taken);
-    let other_format = (!left.is_empty()).then(|| {
-        format!(
-            "`{pattern}` leaves out {} file(s) of another format, of which it takes none: {}; write them as the others \
-             are, or name them in an input of their own",
-            left.len(),
-            listed(&left)
-        )
-    });
-    let unnamed: Vec<&str> = items.not_utf8.iter().map(String::as_str).collect();
-    let not_utf8 = (!unnamed.is_empty()).then(|| {
-        format!(
-            "`{pattern}` leaves out {} name(s) that are not UTF-8: {}; rename them",
-            unnamed.len(),
-            listed(&unnamed)
-        )
-    });
-    other_case.into_iter().chain(other_format).chain(not_utf8).collect()
+    let left_out = |paths: Vec<&str>, what: &str, remedy: &str| {
+        let said = || format!("`{pattern}` leaves out {} {what}: {}; {remedy}", paths.len(), listed(&paths));
+        (!paths.is_empty()).then(said)
+    };
+    let other_case = "file(s) whose names differ only in the case of letters";
+    let other_format = "file(s) of another format, of which it takes none";
+    let as_others = "write them as the others are, or name them in an input of their own";
+    let unnamed = items.not_utf8.iter().map(String::as_str).collect();
+    let all = [
+        left_out(not_taken(&items.in_other_case, taken), other_case, "rename them, or write such a letter as [cC]"),
+        left_out(not_taken(&items.in_other_format, taken), other_format, as_others),
+        left_out(unnamed, "name(s) that are not UTF-8", "rename them"),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 fn of_table(

@@ -17,6 +17,7 @@ use super::run::{Outcome, RunReport, TaskFailure, TaskReport};
 use crate::files::{Places, WriteError};
 use crate::pipeline::store::{PAGE, REPORT};
 use crate::pipeline::tasks::TaskId;
+use crate::words::grouped;
 
 /// A run, summed up.
 #[derive(Debug, Clone, Serialize)]
@@ -172,7 +173,7 @@ fn task_summary(task: &TaskReport) -> TaskSummary<'_> {
 
 fn stage_summary(stage: &super::plan::Laid, report: &RunReport) -> StageSummary {
     let mut summary = StageSummary { stage: stage.name.clone(), job: stage.job.to_owned(), ..StageSummary::default() };
-    let mut quality: Vec<(QualitySummary, Vec<f64>)> = Vec::new();
+    let mut quality = Vec::new();
     for missing in &stage.left_out {
         count(&mut summary.left_out, &missing.reason, missing.count);
     }
@@ -190,38 +191,24 @@ fn stage_summary(stage: &super::plan::Laid, report: &RunReport) -> StageSummary 
         made.left_out.iter().for_each(|what| count(&mut summary.left_out, what, 1));
         made.warnings.iter().for_each(|what| count(&mut summary.warnings, what, 1));
         made.failed.iter().chain(&task.without).for_each(|what| count(&mut summary.failed_inputs, what, 1));
-        for one in made.quality.iter().filter(|one| one.value.is_finite()) {
-            let same = |(known, _): &&mut (QualitySummary, Vec<f64>)| {
-                known.what == one.what && known.unit == one.unit && known.against_truth == one.against_truth
-            };
-            match quality.iter_mut().find(same) {
-                Some((_, values)) => values.push(one.value),
-                None => {
-                    let new = QualitySummary {
-                        what: one.what.clone(),
-                        unit: one.unit.clone(),
-                        against_truth: one.against_truth,
-                        tasks: 0,
-                        least: one.value,
-                        median: one.value,
-                        greatest: one.value,
-                    };
-                    quality.push((new, vec![one.value]));
-                }
-            }
-        }
+        let known = made.quality.iter().filter(|one| one.value.is_finite());
+        quality.extend(known.map(|one| ((&one.what, &one.unit, one.against_truth), one.value)));
     }
-    summary.quality = quality.into_iter().map(|(one, values)| over_tasks(one, values)).collect();
+    summary.quality = grouped(quality).into_iter().map(over_tasks).collect();
     summary
 }
 
-fn over_tasks(mut summary: QualitySummary, mut values: Vec<f64>) -> QualitySummary {
+fn over_tasks(((what, unit, against_truth), mut values): ((&String, &String, bool), Vec<f64>)) -> QualitySummary {
     values.sort_by(f64::total_cmp);
-    summary.tasks = values.len();
-    summary.least = values[0];
-    summary.greatest = values[values.len() - 1];
-    summary.median = (values[(values.len() - 1) / 2] + values[values.len() / 2]) / 2.0;
-    summary
+    QualitySummary {
+        what: what.clone(),
+        unit: unit.clone(),
+        against_truth,
+        tasks: values.len(),
+        least: values[0],
+        median: (values[(values.len() - 1) / 2] + values[values.len() / 2]) / 2.0,
+        greatest: values[values.len() - 1],
+    }
 }
 
 fn count(counts: &mut Vec<Count>, what: &str, more: usize) {
