@@ -609,6 +609,9 @@ fn outlines_of_no_photograph_and_drawn_nails_left_out_are_said() {
     dir.write("set/extension/other.json", labelme([320, 240], &[("finger", "polygon", drawn_outline())]));
     let job = ["photos", "set", "--out", "out"];
     dir.lunula(&job).expect(0).never_says("LabelMe file(s)").never_says("left out").never_says("annotations of");
+    std::fs::copy(dir.path("set/normal/a.png"), dir.path("set/normal/a_mask.png")).expect("copied");
+    dir.lunula(&job).expect(1).says("normal/a_mask.png: looks like the mask of a.png; put masks into a folder");
+    std::fs::remove_file(dir.path("set/normal/a_mask.png")).expect("removed");
     // One file of another program for the whole set.
     dir.write("set/instances.json", "{\"images\": [], \"annotations\": [], \"categories\": []}");
     dir.write("set/annotations.xml", "<?xml version=\"1.0\"?>\n<annotations><version>1.1</version></annotations>");

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use crate::input;
 use crate::photo::pose::sort_by_pose;
-use crate::photograph::{extension, is_picture};
+use crate::photograph::{PICTURES, extension, is_picture};
 use crate::table::{delimiter_of, line_of_row};
 use crate::words::{COMPOSE, composed, shown};
 
@@ -223,6 +223,13 @@ impl PhotoSet {
                 self.fault(file, what);
                 return;
             }
+            if let Some(photo) = mask_of(path, &subject) {
+                self.fault(
+                    file,
+                    format!("looks like the mask of {photo}; put masks into a folder, and say --masks FOLDER"),
+                );
+                return;
+            }
             let (pose, path) = (pose.to_owned(), path.to_owned());
             self.photos.push(Photo { pose, subject, file, path, outline: None, tone: None });
         } else if let Some(kind) = extension(path).filter(|e| OTHER_PICTURES.contains(&e.as_str())) {
@@ -418,6 +425,18 @@ fn name_fault(name: &str, value: &str) -> Option<String> {
         ));
     }
     (!sound).then(|| format!("`{value}` names files of the results, so a {name} cannot hold a path"))
+}
+
+/// The photograph of whose name and a word for masks a picture's name is made, if it lies beside it.
+fn mask_of(path: &Path, stem: &str) -> Option<String> {
+    const WORDS: [&str; 4] = ["_mask", "-mask", " mask", "_segmentation"];
+    let without = |word: &str| {
+        let (photo, end) = stem.split_at_checked(stem.len().checked_sub(word.len())?)?;
+        end.eq_ignore_ascii_case(word).then_some(photo)
+    };
+    let photo = WORDS.into_iter().find_map(without)?;
+    let mut names = PICTURES.iter().map(|ending| format!("{photo}.{ending}"));
+    names.find(|name| path.with_file_name(name).is_file())
 }
 
 /// Files and folders of a folder, hidden ones left out, sorted by name.

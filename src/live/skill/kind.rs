@@ -23,7 +23,7 @@ impl Job for SkillOptions {
         ],
         &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::pictures("")],
     )
-    .revision(8);
+    .revision(9);
 
     fn checked(self) -> Result<Self, OptionFault> {
         let faults = self.faults();

@@ -180,12 +180,17 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
         None | Some(Gate::Touch) => -finger.fz_n[*row],
         Some(_) => f64::NAN,
     };
+    // A row that does not say the force is as one that is lost; a trial is as long as it is.
+    let is_end = |k: usize| k == 0 || k + 1 == own.len();
+    let is_known = |row: &usize| gate(*row) == Some(Gate::Bending) || pressing(row).is_finite();
+    let said: Vec<usize> =
+        own.iter().enumerate().filter(|(k, row)| is_end(*k) || is_known(row)).map(|(_, row)| *row).collect();
     let lifted = if finger.gate.is_empty() {
         Vec::new()
     } else {
-        own.iter().map(|row| gate(*row) == Some(Gate::Bending)).collect()
+        said.iter().map(|row| gate(*row) == Some(Gate::Bending)).collect()
     };
-    let force_n: Vec<f64> = own.iter().map(pressing).collect();
+    let force_n: Vec<f64> = said.iter().map(pressing).collect();
     let angle = |(name, values): &(String, Vec<f64>)| {
         let bent = || own.iter().filter(|row| gate(**row) == Some(Gate::Bending)).map(|row| values[*row]);
         let known = bent().filter(|value| value.is_finite());
@@ -194,7 +199,7 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
     };
     let fz_n: Vec<f64> = force_n.iter().map(|force_n| -force_n).collect();
     let force = || std::iter::once((FORCE, &fz_n[..]));
-    let time_s: Vec<f64> = own.iter().map(|row| rows.time_s[*row]).collect();
+    let time_s: Vec<f64> = said.iter().map(|row| rows.time_s[*row]).collect();
     FingerTrial {
         name: finger.name.clone(),
         doubts: [doubts::forces(force()), doubts::glitches(force()), doubts::cut_off(FORCE, &fz_n)]

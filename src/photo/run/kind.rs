@@ -59,7 +59,7 @@ impl Job for PhotosOptions {
         ],
         &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::pictures("normalized")],
     )
-    .revision(17);
+    .revision(18);
 
     fn checked(mut self) -> Result<Self, OptionFault> {
         if self.channels {
