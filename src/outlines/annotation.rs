@@ -4,6 +4,7 @@
 //! that it was drawn in (upright or stored). A file that somebody else has changed since it was read is not written
 //! over: from then on this photograph's outlines go into a file beside it, and both are kept.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use image::metadata::Orientation;
@@ -59,6 +60,8 @@ pub(super) struct Annotation {
     /// A place is never another shape's.
     shapes: Vec<Option<Shape>>,
     read: Vec<Shape>,
+    /// Polygons that a person has decided on.
+    decided: BTreeSet<usize>,
     drawn: DrawnOn,
 }
 
@@ -97,6 +100,7 @@ impl Annotation {
             file,
             shapes: read.iter().cloned().map(Some).collect(),
             read,
+            decided: BTreeSet::new(),
             drawn: DrawnOn { stored, orientation, stored_size },
         }
     }
@@ -106,11 +110,11 @@ impl Annotation {
     /// # Errors
     /// The file can't be written; then it, and what is known of it, are as before.
     pub(super) fn save(&mut self, shapes: &mut Shapes, says: Says<'_>) -> Result<Saved, WriteError> {
-        let before = (self.shapes.clone(), *shapes);
+        let before = (self.shapes.clone(), self.decided.clone(), *shapes);
         self.say(shapes, says);
         let saved = self.write();
         if saved.is_err() {
-            (self.shapes, *shapes) = before;
+            (self.shapes, self.decided, *shapes) = before;
         }
         saved
     }
@@ -118,6 +122,7 @@ impl Annotation {
     fn say(&mut self, shapes: &mut Shapes, says: Says<'_>) {
         match says {
             Says::AsItWas => {
+                self.decided.retain(|at| Some(*at) != shapes.polygon);
                 for at in [shapes.polygon, shapes.line].into_iter().flatten() {
                     self.shapes[at] = self.read.get(at).cloned();
                 }
@@ -125,6 +130,7 @@ impl Annotation {
             Says::NotANail => {
                 // Whatever else was done to it: what a person did not accept is not kept.
                 self.say(shapes, Says::AsItWas);
+                self.decided.extend(shapes.polygon);
                 if let Some(polygon) = shapes.polygon.and_then(|at| self.shapes[at].as_mut()) {
                     NOT_A_NAIL.clone_into(&mut polygon.label);
                 }
@@ -163,6 +169,7 @@ impl Annotation {
             });
             self.shapes[at] = Some(shape);
         }
+        self.decided.extend(shapes.polygon);
     }
 
     fn free_group(&self) -> i64 {
@@ -176,8 +183,9 @@ impl Annotation {
         let kept = changed.then(|| self.home.clone());
         let home = if changed { free_beside(&self.home) } else { self.home.clone() };
         let shapes: Vec<Shape> = self.shapes.iter().flatten().cloned().collect();
-        if shapes.is_empty() && self.is_new && !changed {
-            // Nothing is left of what was drawn here: as if nobody had.
+        if (shapes.is_empty() || self.decided.is_empty()) && self.is_new && !changed {
+            // Nothing is left of what was drawn and decided here: as if nobody had. What is only detected is no
+            // person's.
             if there.is_some() {
                 std::fs::remove_file(&home).map_err(|why| refused(&home, why))?;
             }

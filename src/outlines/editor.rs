@@ -216,7 +216,9 @@ impl Editor {
                         state.kept.push(kept);
                     }
                 }
-                if !state.saved.contains(&path) {
+                let is_there = path.exists();
+                state.saved.retain(|saved| is_there || *saved != path);
+                if is_there && !state.saved.contains(&path) {
                     state.saved.push(path);
                 }
                 true
@@ -228,9 +230,10 @@ impl Editor {
         }
     }
 
-    /// The decision first: then the file says what it said when it was read.
+    /// The latest first; without a decision the file says what it said when it was read.
     fn undo(&self, state: &mut State, at: usize) {
-        if state.items[at].decision.is_some() {
+        let item = &state.items[at];
+        if item.decision.is_some() && (item.before.is_empty() || !item.is_changed_since()) {
             if self.save(state, at, Says::AsItWas) {
                 state.items[at].decision = None;
                 if !state.is_fault {

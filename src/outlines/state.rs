@@ -34,8 +34,8 @@ pub(super) struct Item {
     pub(super) view: Option<View>,
     pub(super) shapes: Shapes,
     begun: NailShape,
-    /// As it was when it was accepted last.
-    accepted: Option<NailShape>,
+    /// As it was when it was decided on last.
+    decided: Option<NailShape>,
     pub(super) before: Vec<NailShape>,
     /// The gesture that made the latest change.
     pub(super) gesture: Option<u64>,
@@ -57,7 +57,7 @@ impl Item {
             view: None,
             shapes,
             begun,
-            accepted: None,
+            decided: None,
             before: vec![],
             gesture: None,
             keys: 0,
@@ -79,13 +79,18 @@ impl Item {
 
     pub(super) fn decide(&mut self, decision: Decision) {
         self.decision = Some(decision);
-        self.accepted = (decision == Decision::Accepted).then(|| self.shape.clone());
+        self.decided = Some(self.shape.clone());
     }
 
-    /// Whether it was changed since it was decided on last: no file has that.
+    /// Whether it was changed since it was decided on last.
+    pub(super) fn is_changed_since(&self) -> bool {
+        self.decision.is_some() && self.decided.as_ref() != Some(&self.shape)
+    }
+
+    /// Whether no file has what it was changed to.
     pub(super) fn is_unsaved(&self) -> bool {
         match self.decision {
-            Some(Decision::Accepted) => self.accepted.as_ref() != Some(&self.shape),
+            Some(Decision::Accepted) => self.is_changed_since(),
             Some(Decision::Rejected) => false,
             None => self.is_changed(),
         }
