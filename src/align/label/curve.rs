@@ -75,7 +75,7 @@ impl Piece {
 }
 
 /// The seen frames of a joint.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Curve {
     time_s: Vec<f64>,
     deg: Vec<f64>,
@@ -122,6 +122,11 @@ impl Curve {
                 _ => Err(Hole { after_s: before.map(|k| self.time_s[k]), before_s: after.map(|k| self.time_s[k]) }),
             },
         }
+    }
+
+    /// Mean square of the second derivative, degrees a second squared, squared; NaN where no three frames show one.
+    pub(super) fn bend2(&self) -> f64 {
+        self.bend2
     }
 
     /// At the seen frame `k`.

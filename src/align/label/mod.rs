@@ -6,11 +6,12 @@
 //!
 //! An angle is interpolated between frames in which it was really seen, never outside of the video and never over a
 //! gap: two seen frames further apart than the longest gap, be it that the marker was hidden or that the camera dropped
-//! frames. How it runs between frames, and how sure it is there, is [`curve`]'s. The tie's error at that time, times
-//! the angle's rate of change, is a share of the label's error; it is the same for neighbouring rows, so it does not
-//! average out. A label whose frames' errors are not known has none either.
+//! frames. How it runs between frames, and how sure it is there, is [`curve`]'s. What the tie's error at that time
+//! changes the angle by is a share of the label's error, [`share`]'s; it is the same for neighbouring rows, so it does
+//! not average out. A label whose frames' errors are not known has none either.
 
 mod curve;
+mod share;
 
 use std::borrow::Cow;
 
@@ -18,6 +19,7 @@ use super::{Posture, Tie};
 use crate::log::Samples;
 use crate::median::median_of;
 use curve::{Curve, SAME_TIME_S};
+use share::TieShare;
 
 /// Frame intervals that a gap may have where the user does not say. A gap has as many as its length rounds to, so that
 /// frames that come a little irregularly do not make gaps: up to 2.5 median intervals are two.
@@ -95,13 +97,14 @@ pub(super) fn label(posture: &Posture, samples: &Samples, tie: &Tie, max_gap_s: 
     let (mut angles_deg, mut sds_deg, mut gaps) = (Vec::new(), Vec::new(), Vec::new());
     for (joint, name) in posture.joints.iter().enumerate() {
         let mut curve = Curve::new(&posture.time_s, &posture.angles_deg[joint], &posture.sds_deg[joint], max_gap_s);
+        let mut tie_share = TieShare::new(tie, &curve);
         let (mut angles, mut sds) = (vec![f64::NAN; video_s.len()], vec![f64::NAN; video_s.len()]);
         let first_gap = gaps.len();
         for row in inside.clone() {
             match curve.at(video_s[row]) {
                 Ok(at) => {
                     angles[row] = at.deg;
-                    sds[row] = (at.variance_deg2 + tie_share_deg2(tie, video_s[row], at.rate_deg_s)).sqrt();
+                    sds[row] = (at.variance_deg2 + tie_share.deg2(video_s[row], &at)).sqrt();
                 }
                 Err(hole) => {
                     unlabelled[row] = Some(Unlabelled::Gap);
@@ -158,13 +161,6 @@ fn outside(video_s: f64, [first_s, last_s]: [f64; 2]) -> Option<Unlabelled> {
     } else {
         None
     }
-}
-
-/// The square of the tie's share of a label's error.
-fn tie_share_deg2(tie: &Tie, video_s: f64, rate_deg_s: f64) -> f64 {
-    let sd_s = tie.timebase.sd_s(video_s) / (1.0 + tie.timebase.drift);
-    // A sure tie asks for no rate.
-    if sd_s == 0.0 { 0.0 } else { (sd_s * rate_deg_s).powi(2) }
 }
 
 /// The median of the times from frame to frame; 0 where there are none.
