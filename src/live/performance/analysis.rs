@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lunula_live::performance::{Course, Curve, LEVEL, Law, Paired, Point, filled_means};
+use lunula_live::performance::{Course, Curve, LEVEL, Law, LevelAt, Paired, Point, filled_means};
 use lunula_live::spread::{Spread, t_quantile};
 
 use super::read::{Row, Trials};
@@ -55,7 +55,7 @@ fn method(name: &str, times: &Times) -> MethodFigures {
     let last = trials.last().map_or(0.0, |last| f64::from(last.trial));
     let level = fitted.better_curve().and_then(|curve| curve.level_at).map(|trial| {
         // What the search leaves does not make it the next trial.
-        let first_trial = (trial.value - 1e-6).ceil().max(1.0);
+        let first_trial = (trial.trial.value - 1e-6).ceil().max(1.0);
         Level { trial, first_trial, was_reached: first_trial <= last }
     });
     let operators = times.values().flat_map(BTreeMap::keys).collect::<std::collections::BTreeSet<_>>().len();
@@ -100,7 +100,7 @@ impl Fitted {
         let alike = self.aicc_difference.is_some_and(|difference| difference.abs() < ALIKE_AICC);
         let both = [(Law::Exponential, &self.exponential), (Law::Power, &self.power)];
         let fitting = both.into_iter().filter(|(law, _)| alike || Some(*law) == self.better);
-        fitting.filter_map(|(_, fit)| fit.curve).map(|curve| Some(curve.level_at?.value)).collect()
+        fitting.filter_map(|(_, fit)| fit.curve).map(|curve| Some(curve.level_at?.trial.value)).collect()
     }
 }
 
@@ -132,7 +132,10 @@ fn compare(methods: [&MethodFigures; 2], [baseline, other]: [&Times; 2]) -> Comp
 }
 
 /// A statement of which nothing is known.
-const NONE: Statement = Statement { ratio: None, ratio_se: None, at_most: HALF, holds: None, unsettled: None };
+const NONE: Statement =
+    Statement { ratio: None, ratio_se: None, ratio_interval: None, at_most: HALF, holds: None, unsettled: None };
+/// Why a statement is not settled whose ratio may as well be on the other side of half.
+const HOLDS_HALF: &str = "its 95 % interval holds half";
 
 /// Whether the method takes less than half as long in the first trial with both.
 fn initially(first: Option<&TrialPair>) -> Statement {
@@ -140,28 +143,44 @@ fn initially(first: Option<&TrialPair>) -> Statement {
         return NONE;
     };
     let reach = ratio_of_means_se.zip(t_quantile(n - 1)).map(|(se, t)| t * se);
-    let unsettled = match reach {
+    let ratio_interval = reach.map(|reach| [ratio - reach, ratio + reach]);
+    let unsettled = match ratio_interval {
         None => Some("one operator does not say how much operators differ"),
-        Some(reach) if (ratio - HALF).abs() <= reach => Some("its 95 % interval holds half"),
-        Some(_) => None,
+        Some(interval) => holds_half(interval).then_some(HOLDS_HALF),
     };
     let holds = unsettled.is_none().then_some(ratio < HALF);
-    Statement { ratio: Some(ratio), ratio_se: ratio_of_means_se, holds, unsettled, ..NONE }
+    Statement { ratio: Some(ratio), ratio_se: ratio_of_means_se, ratio_interval, holds, unsettled, ..NONE }
+}
+
+fn holds_half([low, high]: [f64; 2]) -> bool {
+    low <= HALF && HALF <= high
+}
+
+/// The 95 % interval of `to` over `from`, of which each has its own: of the logarithms' difference the distances to
+/// either end are the roots of the squared sums (Zou and Donner 2008, doi:10.1002/sim.3095). None where an end is not
+/// known.
+fn ratio_interval(from: LevelAt, to: LevelAt) -> Option<[f64; 2]> {
+    let below = |level: LevelAt| (level.trial.value / level.low).ln();
+    let above = |level: LevelAt| Some((level.high? / level.trial.value).ln());
+    let ratio = to.trial.value / from.trial.value;
+    Some([ratio * (-below(to).hypot(above(from)?)).exp(), ratio * above(to)?.hypot(below(from)).exp()])
 }
 
 /// Of `[baseline, method]`, whether the method is level in half the trials.
 fn to_level_off(methods: [&MethodFigures; 2]) -> Statement {
     let [Some(from), Some(to)] = methods.map(|method| method.levels_off) else { return NONE };
-    let ratio = to.trial.value / from.trial.value;
-    let ratio_se = ratio * (to.trial.se / to.trial.value).hypot(from.trial.se / from.trial.value);
+    let [one, other] = [from.trial.trial, to.trial.trial];
+    let ratio = other.value / one.value;
+    let ratio_se = ratio * (other.se / other.value).hypot(one.se / one.value);
+    let ratio_interval = ratio_interval(from.trial, to.trial);
     let holds = ratio <= HALF;
     let [froms, tos] = methods.map(|method| method.fitted.levels());
     let alike =
         |from: &Option<f64>, to: &Option<f64>| from.zip(*to).is_some_and(|(from, to)| (to / from <= HALF) == holds);
     let unsettled = if !(from.was_reached && to.was_reached) {
         Some("a level was not reached")
-    } else if (ratio - HALF).abs() <= 2.0 * ratio_se {
-        Some("it is within two standard errors of half")
+    } else if ratio_interval.is_none_or(holds_half) {
+        Some(HOLDS_HALF)
     } else if !froms.iter().all(|from| tos.iter().all(|to| alike(from, to))) {
         Some("the other law fits as well, and does not say the same")
     } else {
@@ -170,6 +189,7 @@ fn to_level_off(methods: [&MethodFigures; 2]) -> Statement {
     Statement {
         ratio: Some(ratio),
         ratio_se: Some(ratio_se),
+        ratio_interval,
         holds: unsettled.is_none().then_some(holds),
         unsettled,
         ..NONE

@@ -337,8 +337,8 @@ fn notes(figures: &PerformanceFigures, outputs: &Outputs) -> Vec<String> {
         }
         if method.levels_off.is_none() && fitted.better.is_some() {
             notes.push(format!(
-                "{}: the change from trial to trial is within two standard errors of none: where it levels off is not \
-                 known",
+                "{}: the change from trial to trial may be none (the 95 % interval of b holds 0): where it levels off \
+                 is not known",
                 method.method
             ));
         }

@@ -27,7 +27,7 @@ impl Job for PerformanceOptions {
             Part::pictures(""),
         ],
     )
-    .revision(6);
+    .revision(7);
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(plan(&outputs(Path::new(""), demand)))

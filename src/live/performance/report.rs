@@ -1,6 +1,6 @@
 //! What trials say: means, curves, comparisons.
 
-use lunula_live::performance::{Course, Curve, Law, Measured, Paired};
+use lunula_live::performance::{Course, Curve, Law, LevelAt, Paired};
 use lunula_live::spread::Spread;
 use serde::Serialize;
 
@@ -90,7 +90,7 @@ pub struct Fit {
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Level {
     /// Not whole.
-    pub trial: Measured,
+    pub trial: LevelAt,
     /// The first trial that is as level.
     pub first_trial: f64,
     /// Whether so many trials were done; else the curve is prolonged.
@@ -131,6 +131,8 @@ pub struct Statement {
     pub ratio: Option<f64>,
     /// Its standard error; none where it is not known.
     pub ratio_se: Option<f64>,
+    /// Its 95 % interval; none where it is not known, or has no end.
+    pub ratio_interval: Option<[f64; 2]>,
     /// The statement holds up to this.
     pub at_most: f64,
     /// Whether it does; none where that is not known.

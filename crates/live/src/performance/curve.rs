@@ -10,16 +10,18 @@
 //! Squares are weighted with the number of operators. Given c, a and b are linear; c is found by a search over its
 //! logarithm, which can't miss the least of several minima that lie on the grid. Standard errors are those of
 //! linearized least squares, the variance from the residuals with three degrees of freedom less than trials: they say
-//! how well these operators' mean curve is known, not how operators differ.
+//! how well these operators' mean curve is known, not how operators differ. Intervals are those of Student's t with
+//! these degrees of freedom: of six trials 3.18 standard errors to either side. That of where a curve is level is the
+//! pace's, transformed.
 
 use serde::Serialize;
+
+use crate::spread::t_quantile;
 
 /// Fewer trials are not fitted: Akaike's corrected criterion of three parameters and a variance exists from six on.
 pub const FEWEST_TRIALS: usize = 6;
 /// What is left of the rise where a curve counts as level (assumed: the usual 95 % of settling).
 pub const LEVEL: f64 = 0.05;
-/// A rise of fewer standard errors is not seen (assumed: about 95 %).
-const SEEN: f64 = 2.0;
 /// Paces on the grid of the search.
 const PACES: usize = 240;
 /// Steps of the search between two of them: each leaves 0.62 of the interval, the last 1e-9.
@@ -72,9 +74,21 @@ pub struct Curve {
     pub residual_sd: f64,
     /// Akaike's corrected criterion; none where the curve goes through all points.
     pub aicc: Option<f64>,
-    /// Where 5 % of the rise from the first trial on are left: a trial, not whole. None where b is less than two
-    /// standard errors from zero: no change is seen that could level off.
-    pub level_at: Option<Measured>,
+    /// Where 5 % of the rise from the first trial on are left. None where the 95 % interval of b holds zero: no change
+    /// is seen that could level off.
+    pub level_at: Option<LevelAt>,
+}
+
+/// Where a curve is level: a trial, not whole.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LevelAt {
+    /// The trial and its linearized standard error.
+    #[serde(flatten)]
+    pub trial: Measured,
+    /// Where the 95 % interval begins.
+    pub low: f64,
+    /// Where it ends; none where the pace may be so slow that the curve is level nowhere.
+    pub high: Option<f64>,
 }
 
 /// Why there is no curve.
@@ -138,6 +152,18 @@ impl Law {
             }
         }
     }
+
+    /// The trial at which a curve is level, its pace c known so well; `reach`: standard errors to either side.
+    fn level(self, c: Measured, reach: f64) -> LevelAt {
+        let [value, by_c] = self.level_at(c.value);
+        let [least, most] = [c.value - reach * c.se, c.value + reach * c.se];
+        let at = |c: f64| self.level_at(c)[0];
+        let (low, high) = match self {
+            Self::Exponential => (at(least.max(0.0)), Some(at(most))),
+            Self::Power => (at(most), (least > 0.0).then(|| at(least))),
+        };
+        LevelAt { trial: Measured { value, se: by_c.abs() * c.se }, low, high }
+    }
 }
 
 impl Curve {
@@ -168,15 +194,16 @@ impl Curve {
         let variance = squares / (m - 3) as f64;
         let gradient = |n: f64| [1.0, law.left(n, c), b * law.left_by_c(n, c)];
         let [a_se, b_se, c_se] = standard_errors(points, gradient, variance).ok_or(NoCurve::NotLevelling)?;
-        let [at, at_by_c] = law.level_at(c);
+        let reach = t_quantile(m - 3).ok_or(NoCurve::TooFewTrials)?;
+        let c = Measured { value: c, se: c_se };
         Ok(Self {
             law,
             a: Measured { value: a, se: a_se },
             b: Measured { value: b, se: b_se },
-            c: Measured { value: c, se: c_se },
+            c,
             residual_sd: variance.sqrt(),
             aicc: (!exact).then(|| corrected_criterion(squares, m)),
-            level_at: (b.abs() > SEEN * b_se).then(|| Measured { value: at, se: at_by_c.abs() * c_se }),
+            level_at: (b.abs() > reach * b_se).then(|| law.level(c, reach)),
         })
     }
 

@@ -10,6 +10,6 @@ mod filled;
 mod paired;
 
 pub use course::Course;
-pub use curve::{Curve, FEWEST_TRIALS, LEVEL, Law, Measured, NoCurve, Point};
+pub use curve::{Curve, FEWEST_TRIALS, LEVEL, Law, LevelAt, Measured, NoCurve, Point};
 pub use filled::filled_means;
 pub use paired::Paired;

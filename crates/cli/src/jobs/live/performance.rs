@@ -71,9 +71,10 @@ fn say_method(common: &Common, method: &MethodFigures) {
     };
     let level = match &method.levels_off {
         Some(level) => format!(
-            "; levels off at trial {:.1} ± {:.1}{}",
-            level.trial.value,
-            level.trial.se,
+            "; levels off at trial {:.1} (95 % {:.1} to {}){}",
+            level.trial.trial.value,
+            level.trial.low,
+            level.trial.high.map_or("no end".to_owned(), |high| format!("{high:.1}")),
             if level.was_reached { "" } else { ", which was not reached" }
         ),
         None => String::new(),
@@ -117,10 +118,11 @@ fn say_comparison(common: &Common, one: &Comparison) {
     }
     let answer = |statement: &Statement| {
         let Some(ratio) = statement.ratio else { return "not known".to_owned() };
-        let se = statement.ratio_se.map_or(String::new(), |se| format!(" ± {se:.2}"));
+        let interval =
+            statement.ratio_interval.map_or(String::new(), |[low, high]| format!(", 95 % {low:.2} to {high:.2}"));
         match statement.holds {
-            Some(holds) => format!("{ratio:.2}{se}, so {}", if holds { "yes" } else { "no" }),
-            None => format!("not known ({ratio:.2}{se}): {}", statement.unsettled.unwrap_or_default()),
+            Some(holds) => format!("{ratio:.2}{interval}, so {}", if holds { "yes" } else { "no" }),
+            None => format!("not known ({ratio:.2}{interval}): {}", statement.unsettled.unwrap_or_default()),
         }
     };
     common.say(&format!("  less than half the time per decision initially? {}", answer(&one.initially)));
