@@ -55,13 +55,15 @@ fn what_an_earlier_run_left_among_maps_is_left_out() {
     photos("fresh");
     let layout = |set: &str, out: &str| dir.lunula(&["layout", set, "--k", "1..2", "--out", out]);
     layout("set", "of-set").expect(0).says("maps/flexion-mean.npy and 1 more: not in nails.csv, so of an earlier run");
-    layout("fresh", "of-fresh").expect(0);
+    layout("fresh", "of-fresh").expect(0).never_says("has no run.json");
     assert_eq!(dir.text("of-set/layout.csv"), dir.text("of-fresh/layout.csv"));
     // The report beside the maps is theirs.
     layout("set", "set").expect(2).says("is an input itself");
     dir.write("set/run.json", dir.text("of-set/run.json"));
     layout("set", "no").expect(2).says("set/run.json").says("run `lunula photos` again");
     assert!(!dir.path("no").exists());
+    std::fs::remove_file(dir.path("set/run.json")).expect("removed");
+    layout("set", "bare").expect(0).says("note: set has no run.json").says("1.25 times the nail's box is assumed");
 }
 
 #[test]

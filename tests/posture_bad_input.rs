@@ -187,7 +187,8 @@ fn a_lens_of_other_pictures_is_refused_or_doubted() {
         posture(&dir, "scene/video.mp4")
     };
     let larger = with("size = [1280, 720]\nfx = 1200.0");
-    refused(&dir, larger, &["measured on pictures of 1280 x 720 px, and these are 640 x 360", "multiply", "by 0.5"]);
+    let words = ["measured on pictures of 1280 x 720 px, and these are 640 x 360", "multiply", "by 0.5"];
+    refused(&dir, larger, &[&words[..], &["(c + 0.5) 0.5 - 0.5"]].concat());
     refused(&dir, with("size = [640, 480]\nfx = 600.0"), &["640 x 480", "lunula camera"]);
     refused(&dir, with("size = [640.5, 360]\nfx = 600.0"), &["`size` is no picture's"]);
     with("fx = 600.0\ncx = 100.0\ncy = 90.0").expect(0).says("far from the middle").says("`size = [640, 360]`");

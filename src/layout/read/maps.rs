@@ -73,7 +73,9 @@ pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, Layo
             "has maps of one pose; there are no others to separate it from",
         ));
     }
-    let (n, margin) = (options.cells as usize, margin_of(folder)?);
+    let n = options.cells as usize;
+    let said_margin = margin_of(folder)?;
+    let margin = said_margin.unwrap_or(MARGIN);
     let readings = read_all(folder, &poses, listed.as_ref(), n, &mut strays)?;
     let all = (0..n * n).map(|k| middle(format!("C_{:02}_{:02}", k / n, k % n), [k / n, k % n], n, margin));
     let all: Vec<Place> = all.collect();
@@ -126,7 +128,7 @@ pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, Layo
         left_out,
         rows: freedom,
         contrast: Some(contrast(folder, &poses, margin)?),
-        notes: Vec::new(),
+        notes: said_margin.is_none().then(|| assumed(folder)).into_iter().collect(),
         warnings: warning_of(&strays, folder).into_iter().collect(),
     })
 }
@@ -160,17 +162,25 @@ fn warning_of(strays: &[String], folder: &Path) -> Option<String> {
     ))
 }
 
-/// The pictures' side over the nail's box, as the report beside the maps says it.
+fn assumed(folder: &Path) -> String {
+    format!(
+        "{} has no run.json, which says how much of the nail's surroundings its pictures show: {MARGIN} times the \
+         nail's box is assumed, as `lunula photos` makes them unless --margin says otherwise",
+        folder.display()
+    )
+}
+
+/// The pictures' side over the nail's box, as the report beside the maps says it; none where there is no report.
 ///
 /// # Errors
 /// A report of something else.
-fn margin_of(folder: &Path) -> Result<f64, LayoutError> {
+fn margin_of(folder: &Path) -> Result<Option<f64>, LayoutError> {
     let path = folder.join("run.json");
     // A pipeline's results have none.
-    let Ok(text) = std::fs::read_to_string(&path) else { return Ok(MARGIN) };
+    let Ok(text) = std::fs::read_to_string(&path) else { return Ok(None) };
     let report: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     let margin = report["normalization"]["margin"].as_f64().filter(|margin| (1.0..=10.0).contains(margin));
-    margin.ok_or_else(|| {
+    margin.map(Some).ok_or_else(|| {
         let what = "is not the report of `lunula photos` on these pictures, which says how much of the nail's \
                     surroundings they show; run `lunula photos` again";
         LayoutError::input(&path, what)

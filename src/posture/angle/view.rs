@@ -83,7 +83,8 @@ impl View {
             let scaled = if columns * height == rows * width {
                 let ratio = width as f64 / columns as f64;
                 format!(
-                    "; where all of its view is in them, only smaller or larger, multiply fx, fy, cx, cy by {ratio}"
+                    "; where all of its view is in them, only smaller or larger, multiply fx and fy by {ratio}, and \
+                     make of cx and cy (c + 0.5) {ratio} - 0.5, as (0, 0) is the middle of a pixel"
                 )
             } else {
                 String::new()
