@@ -180,6 +180,8 @@ fn what_recordings_do_not_determine_is_said() {
             .expect(0)
             .json();
     assert_eq!(report["free"][0]["at_bound"], "upper");
+    let said = report["warnings"].to_string();
+    assert!(said.contains("the other errors hold for this bound only"), "{said}");
 }
 
 #[test]

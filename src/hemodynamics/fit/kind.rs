@@ -48,7 +48,7 @@ impl Job for FitOptions {
                 Part::pictures(""),
             ],
         )
-        .revision(8)
+        .revision(9)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

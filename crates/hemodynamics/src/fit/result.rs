@@ -122,8 +122,20 @@ pub struct Estimate {
     pub value: f64,
     /// Its standard error; `None` where the data don't determine it.
     pub standard_error: Option<f64>,
+    /// Ends of two standard errors: how far it goes while the parameters go to the ends of their intervals, and its own
+    /// error there. Both are `None` where there is no standard error, and where no parameter has an interval.
+    pub interval: [Option<f64>; 2],
     /// Whether the data determine it.
     pub identifiable: bool,
+}
+
+impl Estimate {
+    /// How much farther its interval reaches than two standard errors, to the side on which that is more.
+    #[must_use]
+    pub fn beyond_linear(&self) -> Option<f64> {
+        let ([Some(low), Some(high)], Some(error)) = (self.interval, self.standard_error) else { return None };
+        Some((self.value - low).max(high - self.value) / (2.0 * error))
+    }
 }
 
 /// Parameters that can change together with (next to) no change of the voltages.

@@ -4,7 +4,7 @@
 //! The recordings are like those of Fig. 80 (the proximal photodiode under a proximal step), of Fig. 82 (the distal one
 //! under a distal step), and both of a subject together; 4 s with 400 samples. The fit starts from the thesis' table.
 
-use lunula_hemodynamics::{Bounds, FitOptions, Parameters, Recording, fit};
+use lunula_hemodynamics::{Bounds, Estimate, FitOptions, Parameters, Recording, fit};
 
 use crate::phantom::{exact, noisy, pressed, softer, step, tied, with_photodiodes, zero};
 
@@ -37,8 +37,12 @@ fn phantom(kind: &Kind) -> Vec<Recording> {
     }
 }
 
+fn holds(one: &Estimate, truth: f64) -> bool {
+    matches!(one.interval, [Some(low), Some(high)] if low <= truth && truth <= high)
+}
+
 /// Of so many seeds, how many have the truth within two standard errors (k, b, then offset and scaling of each
-/// photodiode) and within the intervals (k, b).
+/// photodiode) and within the intervals.
 fn covered(kind: &Kind, seeds: u64) -> Vec<(String, u64)> {
     let recordings = phantom(kind);
     let mut counts: Vec<(String, u64)> = vec![];
@@ -64,6 +68,11 @@ fn covered(kind: &Kind, seeds: u64) -> Vec<(String, u64)> {
             let inside =
                 low.as_ref().is_none_or(|low| low[0] <= truth) && high.as_ref().is_none_or(|high| truth <= high[0]);
             within.push((format!("interval of {}", group.symbols[0]), inside));
+        }
+        for diode in &result.photodiodes {
+            let truth = [OFFSETS_V[diode.unit], SCALINGS_V[diode.unit]];
+            let inside = [diode.offset, diode.scaling].into_iter().zip(truth).all(|(one, truth)| holds(&one, truth));
+            within.push((format!("intervals of photodiode {}", diode.unit + 1), inside));
         }
         counts.resize_with(within.len(), || (String::new(), 0));
         for (count, (name, inside)) in counts.iter_mut().zip(within) {
@@ -153,4 +162,42 @@ fn an_interval_is_open_towards_a_bound() {
     let without = fit(&noisy, &Parameters::thesis(), &free, &FitOptions::default()).unwrap();
     assert_eq!(without.groups[0].interval, [None, None]);
     assert_eq!(without.groups[0].values, result.groups[0].values);
+}
+
+/// Where a proximal photodiode's offset turns round, as the stiffness changes, the derivatives at the best say that it
+/// is known; its interval goes as far as it goes. Measured with 2 % noise: 231 of 400
+/// offsets and scalings do; two standard errors are short in 7 of them, intervals in none.
+#[test]
+fn an_offset_that_turns_round_is_not_surer_for_it() {
+    let recordings = phantom(&Kind::Proximal);
+    let (mut turning, mut short, mut held) = (0, 0, 0);
+    for seed in 0..200 {
+        let noisy = [noisy(&recordings[0], 0.02, seed)];
+        let result = fit(&noisy, &Parameters::thesis(), &tied(), &with_intervals()).expect("a fit");
+        for (one, truth) in
+            [(result.photodiodes[0].offset, OFFSETS_V[0]), (result.photodiodes[0].scaling, SCALINGS_V[0])]
+        {
+            if one.beyond_linear().is_some_and(|times| times > 3.0) {
+                turning += 1;
+                short += u32::from((one.value - truth).abs() > 2.0 * one.standard_error.unwrap_or(f64::NAN));
+                held += u32::from(holds(&one, truth));
+            }
+        }
+    }
+    println!("{turning} turn round; two standard errors are short in {short}, intervals in {}", turning - held);
+    assert!(turning > 0 && held >= turning - short && 20 * held >= 19 * turning, "{turning} {short} {held}");
+}
+
+/// Where all is straight intervals are two standard errors. Measured: 1.002 to 1.006.
+#[test]
+fn intervals_of_what_goes_straight_are_two_standard_errors() {
+    for kind in [Kind::Distal, Kind::Both] {
+        let noisy: Vec<Recording> = phantom(&kind).iter().zip(0..).map(|(one, k)| noisy(one, 0.001, k)).collect();
+        let result = fit(&noisy, &Parameters::thesis(), &tied(), &with_intervals()).expect("a fit");
+        for one in result.photodiodes.iter().flat_map(|diode| [diode.offset, diode.scaling]) {
+            let times = one.beyond_linear().expect("an interval");
+            println!("{times}");
+            assert!((0.9..=1.1).contains(&times), "{times}");
+        }
+    }
 }

@@ -63,8 +63,8 @@ fn write_calibrated(
         Value::from(start.get(symbol)),
         Value::Number(found.value),
         Value::from(found.standard_error),
-        Value::Missing,
-        Value::Missing,
+        Value::from(found.interval[0]),
+        Value::from(found.interval[1]),
         Value::Missing,
     ])
 }

@@ -188,7 +188,12 @@ fn photodiodes(
             let moved = |lost: &Lost| -> f64 { by[index].iter().zip(&lost.direction).map(|(a, b)| a * b).sum() };
             let gone = |lost: &Lost| moved(lost).abs() * lost.sd.unwrap_or(1.0 / SMALL) > fitted.scaling_v.abs();
             let identifiable = fitted.varied && !lost.iter().any(gone);
-            Estimate { value, standard_error: identifiable.then(|| full[index][index].sqrt()), identifiable }
+            Estimate {
+                value,
+                standard_error: identifiable.then(|| full[index][index].sqrt()),
+                interval: [None; 2],
+                identifiable,
+            }
         };
         let rows = diode.rows.clone();
         let squares: f64 =

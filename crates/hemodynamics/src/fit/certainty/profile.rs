@@ -4,11 +4,17 @@
 //! squares, all other unknowns fitted again, has risen by four times the variance of the noise. Where the voltages
 //! go straight with the parameters that is two standard errors to each side; where they don't, it covers the truth as
 //! often all the same, and standard errors don't (Bates and Watts 1988, doi:10.1002/9780470316757, chapter 6).
+//!
+//! Offsets and scalings follow the coordinates, and by their derivatives at the best an offset that turns round there
+//! does not follow at all. Their intervals are where they were at the walked points, and twice the error that is left
+//! where the coordinate is held: as roots of summed squares two standard errors where all is straight. They are never
+//! shorter than that, as a walk has few points, and may step over the place where an offset turns round.
 
 use crate::fit::algebra::levenberg::{Point, Search};
 use crate::fit::algebra::qr;
 use crate::fit::certainty::Certainty;
 use crate::fit::problem::{Evaluation, Problem};
+use crate::fit::result::FitResult;
 use crate::fit::{bounds, settings, squares};
 
 /// The root of the rise over the variance at the ends.
@@ -32,10 +38,48 @@ pub(in crate::fit) fn intervals(problem: &mut Problem, best: &Evaluation, certai
     let [lower, upper] = bounds(problem);
     let settings = settings(problem, &lower, &upper);
     let profile = Profile { best, covariance: &certainty.covariance, sd: certainty.noise_sd_v, settings };
-    for (q, group) in
-        certainty.result.groups.iter_mut().enumerate().filter(|(_, group)| group.standard_errors.is_some())
-    {
-        group.interval = profile.ends(problem, q).map(|end| end.map(|at| problem.coordinates[q].values(at)));
+    for q in 0..certainty.result.groups.len() {
+        if certainty.result.groups[q].standard_errors.is_some() {
+            let mut walked = Walked::of(best);
+            let ends = profile.ends(problem, q, &mut walked);
+            certainty.result.groups[q].interval = ends.map(|end| end.map(|at| problem.coordinates[q].values(at)));
+            walked.widen(&mut certainty.result, q);
+        }
+    }
+}
+
+/// The least and the largest offset and scaling of each photodiode at the points of a profile.
+struct Walked(Vec<[[f64; 2]; 2]>);
+
+impl Walked {
+    fn of(point: &Evaluation) -> Self {
+        Self(point.fitted.iter().map(|fitted| [[fitted.offset_v; 2], [fitted.scaling_v; 2]]).collect())
+    }
+
+    fn add(&mut self, point: &Evaluation) {
+        for (ranges, fitted) in self.0.iter_mut().zip(&point.fitted) {
+            for ([least, most], value) in ranges.iter_mut().zip([fitted.offset_v, fitted.scaling_v]) {
+                (*least, *most) = (least.min(value), most.max(value));
+            }
+        }
+    }
+
+    /// Widens the photodiodes' intervals by what they were while coordinate `q` was walked.
+    fn widen(&self, result: &mut FitResult, q: usize) {
+        let coordinates = result.groups.len();
+        for (k, (diode, ranges)) in result.photodiodes.iter_mut().zip(&self.0).enumerate() {
+            for (part, estimate) in [&mut diode.offset, &mut diode.scaling].into_iter().enumerate() {
+                let correlation = result.correlations[coordinates + 2 * k + part][q];
+                let Some(error) = estimate.standard_error.filter(|_| !correlation.is_nan()) else { continue };
+                let rest = ERRORS * error * (1.0 - correlation * correlation).sqrt();
+                let [least, most] = ranges[part];
+                let straight = ERRORS * error;
+                let [low, high] = [(estimate.value - least).hypot(rest), (most - estimate.value).hypot(rest)]
+                    .map(|reach| reach.max(straight));
+                let [lowest, highest] = estimate.interval.map(|end| end.unwrap_or(estimate.value));
+                estimate.interval = [Some(lowest.min(estimate.value - low)), Some(highest.max(estimate.value + high))];
+            }
+        }
     }
 }
 
@@ -52,11 +96,11 @@ struct Profile<'a> {
 impl Profile<'_> {
     /// The lower and the upper end of a coordinate that has a standard error; `None` where a bound, or parameters at
     /// which the model has no response, come first.
-    fn ends(&self, problem: &mut Problem, q: usize) -> [Option<f64>; 2] {
-        [-1.0, 1.0].map(|side| self.end(problem, q, side))
+    fn ends(&self, problem: &mut Problem, q: usize, walked: &mut Walked) -> [Option<f64>; 2] {
+        [-1.0, 1.0].map(|side| self.end(problem, q, side, walked))
     }
 
-    fn end(&self, problem: &mut Problem, q: usize, side: f64) -> Option<f64> {
+    fn end(&self, problem: &mut Problem, q: usize, side: f64, walked: &mut Walked) -> Option<f64> {
         let at = self.best.at()[q];
         let bound = if side > 0.0 { self.settings.upper[q] } else { self.settings.lower[q] };
         let room = (bound - at).abs();
@@ -67,7 +111,11 @@ impl Profile<'_> {
         let mut follows: Vec<f64> = self.covariance.iter().map(|row| row[q] / self.covariance[q][q]).collect();
         for _ in 0..TRIES {
             far = far.min(room);
-            match self.rise(problem, q, side * far, &mut follows) {
+            let step = self.rise(problem, q, side * far, &mut follows);
+            if let Some((_, point)) = step.as_ref().filter(|(rise, _)| *rise <= ERRORS + CLOSE) {
+                walked.add(point);
+            }
+            match step.map(|(rise, _)| rise) {
                 Some(rise) if (rise - ERRORS).abs() <= CLOSE => return Some(at + side * far),
                 Some(rise) if rise < ERRORS => below = [far, rise],
                 Some(rise) => beyond = Some([far, rise]),
@@ -86,9 +134,9 @@ impl Profile<'_> {
         None
     }
 
-    /// The root of the rise over the variance where a coordinate is held so far from the best; the others start as they
-    /// followed before.
-    fn rise(&self, problem: &mut Problem, q: usize, by: f64, follows: &mut [f64]) -> Option<f64> {
+    /// The root of the rise over the variance where a coordinate is held so far from the best, and the point there; the
+    /// others start as they followed before.
+    fn rise(&self, problem: &mut Problem, q: usize, by: f64, follows: &mut [f64]) -> Option<(f64, Evaluation)> {
         let (mut lower, mut upper) = (self.settings.lower.to_vec(), self.settings.upper.to_vec());
         let best = self.best.at();
         let held = (best[q] + by).clamp(lower[q], upper[q]);
@@ -101,6 +149,7 @@ impl Profile<'_> {
         for ((follows, at), best) in follows.iter_mut().zip(found.point.at()).zip(best) {
             *follows = (at - best) / by;
         }
-        Some((squares(&found.point) - squares(self.best)).max(0.0).sqrt() / self.sd)
+        let rise = (squares(&found.point) - squares(self.best)).max(0.0).sqrt() / self.sd;
+        Some((rise, found.point))
     }
 }
