@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 use crate::photos_extremes::{save_turned, stored};
 use crate::util::desk::Desk;
 use crate::util::page::{ends, interrupts, until};
+use crate::util::real_data::repository;
 use crate::util::{Dir, Json, drawn_axis, drawn_nail, drawn_outline, labelme};
 
 /// Files have hundredths of pixels.
@@ -107,6 +108,30 @@ fn whatever_else_is_in_a_file_stays_and_undo_goes_back_to_the_beginning() {
     assert_eq!(read("set/a.json"), before);
     desk.keys(&["undo"; 12]);
     assert!(desk.points() == first && desk.sees()["nail"]["can_undo"] == false);
+}
+
+#[test]
+fn undo_takes_the_latest_back_and_what_was_only_detected_leaves_no_file() {
+    let dir = Dir::new();
+    std::fs::create_dir(dir.path("set")).expect("a folder");
+    std::fs::copy(repository().join("fixtures/photos/normal/s01.png"), dir.path("set/a.png")).expect("a photograph");
+    let desk = Desk::at(&dir.path("set"));
+    let found = desk.points();
+    for decision in ["accept", "reject"] {
+        desk.keys(&[decision]);
+        assert!(dir.path("set/a.json").exists(), "{decision}: {}", desk.sees());
+        desk.keys(&["previous", "undo"]);
+        assert!(!dir.path("set/a.json").exists() && desk.sees()["accepted"] == 0, "{decision}: {}", desk.sees());
+    }
+    // A change behind the decision goes first.
+    desk.keys(&["accept", "previous"]);
+    desk.press(json!({"key": "grow", "by": [1, 1], "stride": "coarse"}));
+    assert_ne!(desk.points(), found);
+    desk.keys(&["undo"]);
+    assert!(desk.points() == found && desk.sees()["accepted"] == 1 && dir.path("set/a.json").exists());
+    desk.keys(&["undo"]);
+    assert!(desk.sees()["accepted"] == 0 && !dir.path("set/a.json").exists());
+    assert_eq!(desk.editor.report(&Watch::nobody()).saved, Vec::<std::path::PathBuf>::new());
 }
 
 #[test]

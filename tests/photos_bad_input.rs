@@ -501,6 +501,11 @@ fn an_interrupted_run_leaves_what_stood() {
     dir.write("out/nails.csv", "mine");
     let pipe = dir.path("set/a.png");
     assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    // Where a folder is searched it is passed over.
+    dir.lunula(&["photos", "set", "--out", "others"]).expect(0);
+    assert_eq!(dir.table("others/nails.csv").len(), 3);
+    dir.lunula(&["init", "set", "--out", "set.toml"]).expect(0);
+    dir.write("set/photos.csv", "file,subject,pose\na.png,a,normal\nb.png,b,normal\nc.png,c,normal\nd.png,d,normal\n");
     let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
         .args(["photos", "set", "--out", "out", "--threads", "1"])
         .current_dir(dir.path(""))

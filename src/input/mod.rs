@@ -92,6 +92,12 @@ pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
     Err(io::Error::new(ErrorKind::InvalidInput, what))
 }
 
+/// Whether a path is of what is no file and no folder: a pipe, a socket, a device. Where a folder is searched nobody
+/// means those, and reading one may wait for ever.
+pub(crate) fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|kind| !kind.is_file() && !kind.is_dir())
+}
+
 /// What a folder holds, in the order of the names.
 pub(crate) fn list(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).map_err(|why| match why.kind() {
@@ -99,6 +105,7 @@ pub(crate) fn list(folder: &Path) -> io::Result<Vec<PathBuf>> {
         _ => in_words(folder, why),
     })?;
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+    paths.retain(|path| !is_special(path));
     paths.sort();
     Ok(paths)
 }

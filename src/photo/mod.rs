@@ -35,7 +35,7 @@ pub use pose::THESIS_POSES;
 pub(crate) use pose::is_of_thesis;
 pub use results::NailRow;
 pub(crate) use results::{Scratch, write_npy};
-pub(crate) use set::MASKS;
+pub(crate) use set::{MASKS, stem_of_mask};
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{
     Accuracy, DuplicateSubject, GatherFigures, GatherReport, Gathering, Maps, PartialFault, Partials, Sums, gather,

@@ -427,14 +427,15 @@ fn name_fault(name: &str, value: &str) -> Option<String> {
     (!sound).then(|| format!("`{value}` names files of the results, so a {name} cannot hold a path"))
 }
 
+/// The photograph's name of which a mask's, such as `s01_mask`, is made.
+pub(crate) fn stem_of_mask(stem: &str) -> Option<&str> {
+    let (photo, word) = stem.rsplit_once(['_', '-'])?;
+    MASKS.contains(&word.to_lowercase().as_str()).then_some(photo)
+}
+
 /// The photograph of whose name and a word for masks a picture's name is made, if it lies beside it.
 fn mask_of(path: &Path, stem: &str) -> Option<String> {
-    const WORDS: [&str; 4] = ["_mask", "-mask", " mask", "_segmentation"];
-    let without = |word: &str| {
-        let (photo, end) = stem.split_at_checked(stem.len().checked_sub(word.len())?)?;
-        end.eq_ignore_ascii_case(word).then_some(photo)
-    };
-    let photo = WORDS.into_iter().find_map(without)?;
+    let photo = stem_of_mask(stem)?;
     let mut names = PICTURES.iter().map(|ending| format!("{photo}.{ending}"));
     names.find(|name| path.with_file_name(name).is_file())
 }

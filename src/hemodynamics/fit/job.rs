@@ -23,9 +23,9 @@ use crate::words::in_order;
 
 /// The stage that fits parts of the recordings.
 const ALONE: &str = "each by itself";
-/// An offset or scaling that goes so many times as far as two standard errors is warned of. Measured on 20 proximal
-/// steps with noise of 0.05 mV: none; with 0.2 mV, which leaves the stiffness uncertain by a third: 40 of 40, and two
-/// standard errors of V_0 and V_1 were short in 6 of 80, intervals in 2.
+/// An offset or scaling that goes so many times as far as two standard errors is noted. Measured on proximal steps with
+/// noise of 0.05 mV: in none of 20; with 0.2 mV: in 40 of 40, and two standard errors of V_0 and V_1 were short in 6 of
+/// 80, intervals in 2.
 const FAR_BEYOND: f64 = 3.0;
 
 /// What a fit needs, read and checked.
@@ -265,7 +265,6 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], of_parts: Vec<Stri
             names.join(" = ")
         ));
     }
-    warnings.extend(turning(&result.photodiodes));
     if let Some(rival) = result.rivals.first() {
         let both = rival.values.iter().flatten().map(|value| format!("{value:.3e}")).collect::<Vec<_>>().join(", ");
         warnings.push(format!(
@@ -348,6 +347,7 @@ fn notes(result: &FitResult, inputs: &FitInputs, recordings: &[ReadRecording], f
             ));
         }
     }
+    notes.extend(turning(&result.photodiodes));
     let panels: usize = recordings.iter().map(|read| read.photodiodes.len()).sum();
     if figures && panels > figure::MOST_PANELS {
         notes.push(format!("the picture shows {} of {panels} panels; the table has all", figure::MOST_PANELS));

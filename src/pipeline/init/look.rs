@@ -6,8 +6,9 @@ use std::path::Path;
 
 use super::results::JobResults;
 use crate::input;
+use crate::input::is_special;
 use crate::log::{Columns, LogHeader};
-use crate::photo::MASKS;
+use crate::photo::{MASKS, stem_of_mask};
 use crate::photograph::PICTURES;
 use crate::pipeline::store::MadeBefore;
 use crate::table::{Table, column_names};
@@ -151,13 +152,23 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
 /// Walks a folder; of one that is passed over only the names are taken.
 fn walk(folder: &Path, at: &str, depth: usize, is_passed: bool, found: &mut Inventory) {
     let here = folder.join(at);
+    let above = here.canonicalize().ok();
     let mut entries: Vec<(String, bool)> = std::fs::read_dir(&here)
         .into_iter()
         .flatten()
         .flatten()
         .filter_map(|entry| {
-            let name = entry.file_name().into_string().inspect_err(|_| found.unnamed += 1).ok()?;
-            Some((name, entry.path().is_dir()))
+            let (name, path) = (entry.file_name(), entry.path());
+            // A link to a folder above has all of it once more.
+            let is_loop = || {
+                path.is_symlink()
+                    && above.as_ref().zip(path.canonicalize().ok()).is_some_and(|(above, to)| above.starts_with(to))
+            };
+            if is_special(&path) || path.is_dir() && is_loop() {
+                return None;
+            }
+            let name = name.into_string().inspect_err(|_| found.unnamed += 1).ok()?;
+            Some((name, path.is_dir()))
         })
         .filter(|(name, _)| !name.starts_with('.'))
         .collect();
@@ -233,8 +244,7 @@ fn folder_and_stem(path: &str) -> (String, String) {
 fn of_mask(path: &str) -> Option<String> {
     let (folder, stem) = folder_and_stem(path);
     let in_masks = folder.split('/').any(|part| MASKS.contains(&part));
-    let suffixed = stem.rsplit_once(['_', '-']).filter(|(_, last)| MASKS.contains(last)).map(|(of, _)| of.to_owned());
-    suffixed.or_else(|| in_masks.then_some(stem))
+    stem_of_mask(&stem).map(str::to_owned).or_else(|| in_masks.then_some(stem))
 }
 
 fn sort(path: &Path) -> Sort {

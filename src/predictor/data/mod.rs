@@ -240,6 +240,13 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         }
         splitter.finish(&mut recordings, &mut warnings);
         warnings.extend(health::warnings(source, &wanted.targets, wanted.rows.keep_faults));
+        if file.used == 0 {
+            let columns = source.inputs.iter().chain(&wanted.targets).zip(source.empty_cells());
+            let empty: Vec<&str> =
+                columns.filter(|(_, empty)| *empty == file.rows).map(|(name, _)| name.as_str()).collect();
+            let why = if empty.is_empty() { String::new() } else { format!("; {} is always empty", empty.join(", ")) };
+            warnings.push(format!("{}: none of its {} rows is used{why}", called.name, file.rows));
+        }
         files.push(file);
         parts.push(start..time_s.len());
     }

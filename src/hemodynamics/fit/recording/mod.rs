@@ -200,6 +200,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut warnings = rows.warnings().to_vec();
+    warnings.extend(photodiodes::beyond(names, &columns.photodiodes, units));
     warnings.extend(unknown.into_iter().chain(of_photodiodes));
     let used: Vec<&str> = needed.iter().copied().chain(photodiodes.iter().map(|one| one.name.as_str())).collect();
     if let Some(times_s) = times_s.as_deref().filter(|_| !rows.is_log()) {

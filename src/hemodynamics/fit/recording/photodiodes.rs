@@ -60,6 +60,21 @@ pub(super) fn of(names: &[String], named: &[PhotodiodeColumn], units: usize) -> 
     Ok(own)
 }
 
+/// That there are photodiodes `VP3`, .. above units that the model lacks, where nothing says which are meant.
+pub(super) fn beyond(names: &[String], named: &[PhotodiodeColumn], units: usize) -> Option<String> {
+    let number = |name: &&String| name.strip_prefix("VP")?.parse::<usize>().ok();
+    let others: Vec<&str> =
+        names.iter().filter(|name| number(name).is_some_and(|number| number > units)).map(String::as_str).collect();
+    (named.is_empty() && !others.is_empty()).then(|| {
+        format!(
+            "{} is not used: the model has {units} units; say --units, or which column is above which unit \
+             (--photodiode {}=1)",
+            others.join(", "),
+            others[0]
+        )
+    })
+}
+
 /// Whether a photodiode is the same wherever it is known, in two samples or more: stuck at a rail, or dead. Whatever is
 /// fitted to it, its offset leaves no residual, and its noise would be what rounding leaves of its mean.
 pub(super) fn is_constant(voltages_v: &[f64]) -> bool {
@@ -80,7 +95,7 @@ pub(super) fn takes_few_values(name: &str, voltages_v: &[f64]) -> Option<String>
     let rows = known.len();
     known.sort_unstable_by(f64::total_cmp);
     known.dedup();
-    (known.len() <= FEW_VALUES && rows >= ROWS_EACH * known.len()).then(|| {
+    ((1..=FEW_VALUES).contains(&known.len()) && rows >= ROWS_EACH * known.len()).then(|| {
         format!(
             "{name} takes {} values in {rows} rows: what is seen of it are the converter's steps, and standard errors \
              are too small; record it with more gain, or leave it out",
@@ -150,6 +165,14 @@ pub(in crate::hemodynamics::fit) fn note_lacking(recordings: &mut [ReadRecording
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn photodiodes_above_no_unit_are_named() {
+        let names = ["time_s", "VP1", "VP2", "VP3", "VPx"].map(str::to_owned);
+        assert!(beyond(&names, &[], 2).is_some_and(|said| said.starts_with("VP3 is not used: the model has 2 units")));
+        let named = PhotodiodeColumn::parse("VP2=1").expect("a photodiode");
+        assert_eq!([beyond(&names, &[], 3), beyond(&names, &[named], 2)], [None, None]);
+    }
 
     #[test]
     fn a_photodiode_of_few_steps_is_doubted() {

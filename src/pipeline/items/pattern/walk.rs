@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{Part, Pattern};
+use crate::input::is_special;
 use crate::job::Keys;
 use crate::words::instead;
 
@@ -49,7 +50,8 @@ impl Tree for Disk {
                 let path = entry.path();
                 let folder = path.is_dir();
                 let name = entry.file_name().to_string_lossy().into_owned();
-                (!folder || !self.is_out(&path)).then_some((name, folder))
+                let is_own = folder && self.is_out(&path);
+                (!is_own && !is_special(&path)).then_some((name, folder))
             })
             .collect();
         names.sort();

@@ -6,9 +6,24 @@ pub(crate) mod predict;
 pub(crate) mod prune;
 pub(crate) mod train;
 
-use lunula::predictor::{ByTarget, Merit};
+use lunula::predictor::{ByTarget, FileRows, Merit};
 
 use crate::Common;
+
+/// A line for each file of which rows are left out.
+fn say_rows<'a>(common: &Common, files: impl Iterator<Item = &'a FileRows>) {
+    for file in files.filter(|file| file.used < file.rows) {
+        common.say(&format!(
+            "{}: {} of {} rows used ({} lack a cell, {} invalid, {} with a fault of the sensor)",
+            file.path.display(),
+            file.used,
+            file.rows,
+            file.empty,
+            file.invalid,
+            file.faults
+        ));
+    }
+}
 
 /// One line per target: `Fx_N  RMSE 0.31  bias -0.02  R2 0.87`.
 fn say_merit(common: &Common, what: &str, merit: &Merit) {

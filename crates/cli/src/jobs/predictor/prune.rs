@@ -7,7 +7,7 @@ use clap::builder::Resettable;
 use lunula::job::Given;
 use lunula::predictor::{DataFile, PruneChoices, PruneReport, PruneRow, prune, prune_plan};
 
-use crate::jobs::predictor::figure;
+use crate::jobs::predictor::{figure, say_rows};
 use crate::jobs::{self, ResultArgs};
 use crate::{Common, Outcome};
 
@@ -53,6 +53,7 @@ pub(crate) fn run(args: &PruneArgs) -> anyhow::Result<Outcome> {
 }
 
 fn say(common: &Common, report: &PruneReport) {
+    say_rows(common, report.data.iter().chain(&report.validate));
     let line = |row: &PruneRow| {
         let errors = row.validate_rmse.iter().flat_map(|by| &by.0);
         let errors: Vec<String> = errors.map(|(name, value)| format!("{name} {}", figure(*value))).collect();

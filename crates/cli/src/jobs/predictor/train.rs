@@ -7,7 +7,7 @@ use lunula::job::Given;
 use lunula::predictor::models::{EigennailsReport, Report};
 use lunula::predictor::{TrainChoices, TrainInputs, TrainOutputs, TrainReport, train, train_plan};
 
-use crate::jobs::predictor::{figure, say_merit};
+use crate::jobs::predictor::{figure, say_merit, say_rows};
 use crate::jobs::{self, JobArgs, Request, needed};
 use crate::{Common, Outcome};
 
@@ -54,17 +54,7 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
 }
 
 fn say(common: &Common, report: &TrainReport) {
-    for file in report.data.iter().chain(&report.validate).filter(|file| file.used < file.rows) {
-        common.say(&format!(
-            "{}: {} of {} rows used ({} lack a cell, {} invalid, {} with a fault of the sensor)",
-            file.path.display(),
-            file.used,
-            file.rows,
-            file.empty,
-            file.invalid,
-            file.faults
-        ));
-    }
+    say_rows(common, report.data.iter().chain(&report.validate));
     match &report.fit {
         Report::LeastSquares(fit) => common.say(&format!(
             "{} terms, {} of them independent; condition {}, {} digits of the coefficients can be trusted",
