@@ -4,6 +4,7 @@
 use std::process::Command;
 
 use crate::photos_extremes::save_turned;
+use crate::util::page::until;
 use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme};
 
 /// A set of three good photographs.
@@ -490,7 +491,7 @@ fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is
     assert!(html.contains("Not one nail could be used") && html.contains("is not trusted"));
 }
 
-/// Ctrl-C while a photograph is being read: a named pipe holds the job there.
+/// Ctrl-C while photographs are being read.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_run_leaves_what_stood() {
@@ -505,20 +506,26 @@ fn an_interrupted_run_leaves_what_stood() {
     dir.lunula(&["photos", "set", "--out", "others"]).expect(0);
     assert_eq!(dir.table("others/nails.csv").len(), 3);
     dir.lunula(&["init", "set", "--out", "set.toml"]).expect(0);
-    dir.write("set/photos.csv", "file,subject,pose\na.png,a,normal\nb.png,b,normal\nc.png,c,normal\nd.png,d,normal\n");
+    // Some seconds of work, from when its folder is there.
+    for subject in 0..400 {
+        std::fs::copy(dir.path("set/b.png"), dir.path(&format!("set/s{subject}.png"))).expect("copied");
+        std::fs::copy(dir.path("set/b.json"), dir.path(&format!("set/s{subject}.json"))).expect("copied");
+    }
+    let hidden = || {
+        let entries = std::fs::read_dir(dir.path("out")).expect("a folder").flatten();
+        entries.filter(|entry| entry.file_name().to_string_lossy().starts_with('.')).count()
+    };
+    let before = hidden();
     let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
         .args(["photos", "set", "--out", "out", "--threads", "1"])
         .current_dir(dir.path(""))
         .stderr(std::process::Stdio::piped())
         .spawn()
         .expect("the binary runs");
-    // Opens once the job reads the pipe.
-    let held = std::fs::OpenOptions::new().write(true).open(&pipe).expect("the pipe");
+    until("work", || hidden() > before);
     // The shell's own `kill`: a small system has no other.
     let interrupt = format!("kill -INT {}", child.id());
     assert!(Command::new("sh").args(["-c", &interrupt]).status().expect("a shell").success());
-    std::thread::sleep(std::time::Duration::from_millis(300));
-    drop(held);
     let mut stderr = String::new();
     std::io::Read::read_to_string(&mut child.stderr.take().expect("piped"), &mut stderr).expect("text");
     assert_eq!(child.wait().expect("it ends").code(), Some(130), "{stderr}");

@@ -18,7 +18,7 @@ const SAMPLES: usize = 50;
 /// Rows of a sensor are nearer together, seconds (assumed), and so near where there are many: 1 and 2 kHz.
 const APART_S: f64 = 1.0;
 const MANY_APART_S: f64 = 0.5;
-/// Nor nearer together, where all of them are within so many seconds (assumed): minutes or days that are called seconds.
+/// Nor nearer together, where all of them are within so many seconds (assumed): minutes or days called seconds.
 const NEAR_S: [[f64; 2]; 2] = [[9e-4, 15.0], [2e-3, 3.0]];
 /// Where a finger hardly presses, newtons, in so many rows, it is not sheared by more than this (assumed).
 const TOUCHES_N: f64 = 0.05;

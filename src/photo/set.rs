@@ -99,7 +99,7 @@ pub struct PhotoSet {
     pub unlisted: Vec<String>,
     /// Folders within those of poses that hold photographs, which are not used, and how many, sorted.
     pub deeper: Vec<(String, usize)>,
-    /// JSON and XML files beside photographs that are called as none of them, and that a manifest does not name, sorted.
+    /// JSON and XML files beside photographs that are called as none of them, and that no manifest names, sorted.
     pub alone: Vec<PathBuf>,
 }
 
@@ -448,7 +448,7 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
     Ok(paths.into_iter().partition(|p| !p.is_dir()))
 }
 
-/// The JSON and XML files of a folder's files that are called as none of its pictures, whatever the encoding of accents.
+/// JSON and XML files of a folder's files that are called as none of its pictures, whatever the encoding of accents.
 fn called_as_no_picture(files: &[PathBuf]) -> Vec<PathBuf> {
     let stem = |path: &Path| composed(&path.file_stem().unwrap_or_default().to_string_lossy());
     let is_any_picture =

@@ -38,7 +38,7 @@ pub struct Info {
     pub duration_s: Option<f64>,
     /// FFmpeg's name of the samples' layout in the file, where frames had to be converted from it.
     pub converted: Option<String>,
-    /// All chroma of the first frame is neutral: the video is grey, however it is stored.
+    /// All chroma of the first frames is neutral: the video is grey, however it is stored.
     pub grey: bool,
     /// Frames a second that times are counted with, where the file holds no times.
     pub rate_without_times_hz: Option<f64>,
@@ -130,10 +130,15 @@ pub(super) fn info(
         declared_frames: source.declared_frames(),
         duration_s: source.duration_s(),
         converted,
-        grey: (1..planes.planes().min(3)).all(|plane| is_neutral(planes, plane, &format)),
+        grey: is_grey(planes, &format),
         rate_without_times_hz,
         warnings,
     })
+}
+
+/// Whether all chroma of a frame is neutral.
+pub(super) fn is_grey(planes: &frame::Video, format: &Format) -> bool {
+    (1..planes.planes().min(3)).all(|plane| is_neutral(planes, plane, format))
 }
 
 /// Chroma within a level of none, on the scale of 8 bits.

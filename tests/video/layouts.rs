@@ -5,7 +5,7 @@ use std::path::Path;
 use ffmpeg::format::Pixel;
 use ffmpeg::{Dictionary, Packet, Rational, codec, color, frame, software::scaling};
 use ffmpeg_next as ffmpeg;
-use lunula::video::{Encoding, Format, Frame, Item, Matrix, Turn, Video, VideoError};
+use lunula::video::{Encoder, Encoding, Format, Frame, Item, Matrix, Turn, Video, VideoError};
 
 use super::scene::{SMALL, find, numbered, patched, uneven, write};
 
@@ -70,6 +70,25 @@ fn grey_comes_back_as_grey_though_with_chroma() {
         let expected = picture.frame(0, 0.0);
         let luma = Frame { chroma: None, ..frame };
         assert!(furthest(&luma, &expected) <= lost_at_crf_0(depth), "{depth} bits");
+    }
+}
+
+#[test]
+fn a_film_that_begins_in_black_and_has_colour_behind_is_not_grey() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mp4");
+    for (lead, colour, grey) in [(1, 128, true), (1, 160, false), (40, 160, false), (140, 100, false)] {
+        let mut encoder = Encoder::create(&path, &Encoding { crf: 0, ..Encoding::new(SMALL) }).unwrap();
+        for k in 0..lead + 5 {
+            let mut picture = numbered(SMALL, k);
+            if k >= lead {
+                picture.planes[1][40..80].fill(colour);
+            }
+            encoder.push(&picture, uneven(k)).unwrap();
+        }
+        encoder.finish().unwrap();
+        let mut video = Video::open(&path, 1).unwrap();
+        assert_eq!((video.info().grey, video.count_rest().unwrap()), (grey, lead + 5), "{lead} {colour}");
     }
 }
 

@@ -21,12 +21,12 @@ use ffmpeg_next as ffmpeg;
 
 use crate::video::colour::convert;
 use crate::video::colour::hdr::ToOrdinary;
-use crate::video::info::info;
+use crate::video::info::{info, is_grey};
 use crate::video::quantizer;
 use crate::video::read::ahead::{Events, Told, most_waiting};
 use crate::video::read::reader::{Alarm, Event, Reader};
 use crate::video::read::source::Care;
-use crate::video::{Frame, Info, Matrix, VideoError};
+use crate::video::{Format, Frame, Info, Matrix, VideoError};
 
 /// What comes next of a video.
 #[derive(Debug)]
@@ -134,6 +134,9 @@ impl Video {
             reader.tick_s(),
         )
         .map_err(failed)?;
+        if info.grey && info.format.subsampling.is_some() {
+            info.grey = begins_grey(path, threads, &info.format)?;
+        }
         let ordinary = ToOrdinary::new(info.format, &info.matrix, info.chroma_site);
         if ordinary.is_some() {
             info.matrix = Matrix::BT709;
@@ -283,6 +286,24 @@ impl Video {
         let (luma, chroma) = self.info.format.planes(planes);
         Frame { index, time_s, luma, chroma, quantizer: self.quantizer }
     }
+}
+
+/// So many frames may a film begin with that are grey (assumed: five seconds of black, a title, a fade).
+const LEAD_FRAMES: u32 = 150;
+
+/// Whether the first frames of a film are all grey: it may begin in black, with a title, or fade in.
+fn begins_grey(path: &Path, threads: usize, format: &Format) -> Result<bool, VideoError> {
+    let mut reader = Reader::open(path, threads, Care::Fast)?;
+    for _ in 0..LEAD_FRAMES {
+        // What can't be decoded is said by whoever reads the film.
+        let Ok(Some(event)) = reader.next_event() else { break };
+        let Some(picture) = event.picture else { continue };
+        let planes = convert::planes(&picture).unwrap_or_default();
+        if !is_grey(planes.as_ref().unwrap_or(&picture), format) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn nothing_decoded(reader: &Reader, missing: usize) -> String {
