@@ -188,7 +188,7 @@ fn gaps_and_unknown_forces_end_a_contact_and_are_no_time() {
     let mut all = rows(0.0, 5.0, &[&long, &INDEX]);
     // Forces are not known from 2.00 to 2.02 s, and in single rows, which are as rows that are lost; rows between 1.0
     // and 1.5 s are lost.
-    [200, 201, 202, 250, 270, 271].map(|row| all[row][1] = f64::NAN);
+    [200, 201, 202, 250, 270, 271].into_iter().for_each(|row| all[row][1] = f64::NAN);
     all.retain(|row| !(1.005..1.495).contains(&row[0]));
     dir.write("t.csv", csv(NAMES, &all));
     let answer = run(&dir, "t.csv --out o --json").expect(0);

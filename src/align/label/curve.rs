@@ -129,6 +129,12 @@ impl Curve {
         self.bend2
     }
 
+    /// From the least angle to the greatest.
+    pub(super) fn range_deg(&self) -> f64 {
+        let [least, greatest] = crate::median::ends(self.deg.iter().copied());
+        greatest - least
+    }
+
     /// At the seen frame `k`.
     fn on(&mut self, k: usize) -> Between {
         let left = if self.joined(k) { Some(k) } else { k.checked_sub(1).filter(|&left| self.joined(left)) };

@@ -6,7 +6,7 @@
 //!
 //! The second derivative is taken from the second difference over `REACH` s, to which the frames' noise adds no more
 //! than half their variance, not from the polynomial between two frames, where noise is multiplied by the squared frame
-//! rate. A motion that repeats itself after just that time comes back to the same angle, so the larger of it and the
+//! rate; the rate from the first difference over 0.6 of it, about s, for the same reason. A motion that repeats itself after just that time comes back to the same angle, so the larger of it and the
 //! one over 0.6 of the time counts: both are whole periods from five and three on.
 
 use super::curve::{Between, Curve};
@@ -25,12 +25,14 @@ pub(super) struct TieShare<'a> {
     around: [[Curve; 2]; 2],
     /// Mean square of the joint's second derivative.
     bend2: f64,
+    /// From the joint's least angle to its greatest, which no error of a time exceeds.
+    range_deg: f64,
 }
 
 impl<'a> TieShare<'a> {
     pub(super) fn new(tie: &'a Tie, curve: &Curve) -> Self {
         let around = STEPS.map(|_| [curve.clone(), curve.clone()]);
-        Self { tie, around, bend2: curve.bend2() }
+        Self { tie, around, bend2: curve.bend2(), range_deg: curve.range_deg() }
     }
 
     /// The share's square at a label.
@@ -40,19 +42,24 @@ impl<'a> TieShare<'a> {
         if sd_s == 0.0 {
             return 0.0;
         }
-        let [whole, part] = [0, 1].map(|k| self.second_difference(k, video_s, REACH * STEPS[k] * sd_s, label.deg));
-        let bend = match whole.zip(part) {
-            Some((whole, part)) => whole.abs().max(part.abs()).powi(2) / 12.0,
+        match [0, 1].map(|k| self.around(k, video_s, REACH * STEPS[k] * sd_s)) {
+            [Some(whole), Some(part)] => {
+                let [whole_bend, part_bend] = [whole, part].map(|[before, after]| before + after - 2.0 * label.deg);
+                let slope = (part[1] - part[0]) / (2.0 * REACH * STEPS[1]);
+                slope * slope + whole_bend.abs().max(part_bend.abs()).powi(2) / 12.0
+            }
             // A gap or an end of the video is near.
-            None => 0.75 * self.bend2 * sd_s.powi(4),
-        };
-        (sd_s * label.rate_deg_s).powi(2) + bend
+            _ => {
+                let share = (sd_s * label.rate_deg_s).powi(2) + 0.75 * self.bend2 * sd_s.powi(4);
+                // Where no rate is known, none is made up.
+                if share > self.range_deg.powi(2) { self.range_deg.powi(2) } else { share }
+            }
+        }
     }
 
-    /// None where there is no angle a step before or after the label.
-    fn second_difference(&mut self, k: usize, video_s: f64, step_s: f64, deg: f64) -> Option<f64> {
+    /// The angles a step before the label and after it, where both are known.
+    fn around(&mut self, k: usize, video_s: f64, step_s: f64) -> Option<[f64; 2]> {
         let [before, after] = &mut self.around[k];
-        let [before, after] = [before.at(video_s - step_s).ok()?, after.at(video_s + step_s).ok()?];
-        Some(before.deg + after.deg - 2.0 * deg)
+        Some([before.at(video_s - step_s).ok()?.deg, after.at(video_s + step_s).ok()?.deg])
     }
 }

@@ -143,7 +143,8 @@ fn initially(first: Option<&TrialPair>) -> Statement {
         return NONE;
     };
     let reach = ratio_of_means_se.zip(t_quantile(n - 1)).map(|(se, t)| t * se);
-    let ratio_interval = reach.map(|reach| [ratio - reach, ratio + reach]);
+    // Times are positive.
+    let ratio_interval = reach.map(|reach| [(ratio - reach).max(0.0), ratio + reach]);
     let unsettled = match ratio_interval {
         None => Some("one operator does not say how much operators differ"),
         Some(interval) => holds_half(interval).then_some(HOLDS_HALF),

@@ -30,13 +30,13 @@ pub(super) fn on_another_clock(trace: &Trace) -> Option<String> {
     })
 }
 
-/// A flag that changes so often, and only at rows that are a multiple of so many apart, or of so long, seconds, is held
+/// Contact that changes so often, and only at rows that are a multiple of so many apart, or of so long, seconds, is held
 /// (assumed; by chance ten changes are all a multiple of three rows apart once in 20,000 recordings).
 const CHANGES: usize = 10;
 const HELD_ROWS: usize = 3;
 const HELD_S: f64 = 0.03;
 
-/// That contact, a flag, is of a slower log, whose values stand in several rows each.
+/// That contact, as 0 and 1, is of a slower log, whose values stand in several rows each.
 pub(super) fn held(times: &[f64], flags: &[f64]) -> Option<String> {
     let changes: Vec<usize> = (1..flags.len()).filter(|&k| (flags[k] - flags[k - 1]).abs() == 1.0).collect();
     let rows = changes.windows(2).map(|pair| pair[1] - pair[0]).reduce(common)?;

@@ -120,7 +120,7 @@ fn read_trace(
     // Of a recording that begins with an unlit row, the first lit one.
     let mut begins = false;
     // Of all rows, lit or not.
-    let (mut times, mut truths, mut known) = (Vec::new(), Vec::new(), 0);
+    let (mut times, mut truths, mut flags, mut known) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let (mut begun, mut grouped) = (0, false);
     let path = &recording.path;
     let piece =
@@ -159,6 +159,7 @@ fn read_trace(
             trace.contacts.push(row.time_s, touches, row.begins);
             times.push(row.time_s);
             truths.push(row.values[*place]);
+            flags.push(touches.map_or(f64::NAN, |touches| f64::from(u8::from(touches))));
             known += usize::from(touches.is_some());
             begins |= row.begins;
             let Some(answer) = sensor.row(&row) else { return Ok(()) };
@@ -200,7 +201,7 @@ fn read_trace(
     }
     said.warnings.extend(doubts::time(&times));
     said.warnings.extend(doubts::forces(iter::once((truth.column.as_str(), &truths[..]))));
-    said.warnings.extend(held(&times, &truths).or_else(|| doubts::held(&truth.column, &times, &truths)));
+    said.warnings.extend(held(&times, &flags).or_else(|| doubts::held(&truth.column, &times, &truths)));
     let (rows, outside) = (trace.time_s.len(), trace.outside.iter().filter(|outside| **outside).count());
     said.warnings.extend(extrapolated(outside as u64, rows as u64));
     if rows == 0 {

@@ -230,8 +230,10 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             warnings.extend(loads.any(turns).then(|| rows.like_a_time(&used)).flatten());
         }
     }
-    let loads = needed.iter().filter(|name| **name != TIME);
-    let unloaded = loads.filter_map(|name| signs::never_rests(name, read.get(name).unwrap_or_default()));
+    let loads = || needed.iter().filter(|name| **name != TIME);
+    let values = |name: &&str| read.get(name).unwrap_or_default();
+    let largest = loads().flat_map(values).fold(0.0, |largest: f64, load| largest.max(load.abs()));
+    let unloaded = loads().filter_map(|name| signs::never_rests(name, values(name), largest));
     let notes = rows.notes().into_iter().chain(unloaded).collect();
     Ok(ReadRecording {
         columns: names.to_vec(),

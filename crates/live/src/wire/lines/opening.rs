@@ -212,7 +212,7 @@ impl Opening {
                 let text = String::from_utf8_lossy(cell);
                 cell.is_empty() || text.replace(',', ".").parse::<f64>().is_ok()
             };
-            Cells::new(line, separator).all(cell)
+            Cells::new(line, separator).all(cell) && Cells::new(line, separator).any(|cell| !cell.is_empty())
         };
         if let Some(refused) = self.refused.take() {
             let cells = Cells::new(line, refused.separator).count();

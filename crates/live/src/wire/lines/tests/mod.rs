@@ -190,6 +190,8 @@ fn faults_say_what_to_do() {
     }
     let dated = fault(b"time,light\n05.03.2024 09:26:53,0.1,ok\n", true);
     assert!(dated.contains("line 1 names the columns time,light"), "{dated}");
+    let padded = fault(b"Subject,S1,,\n,,,\ntime,light,a,b\n1,2,3,4\n", true);
+    assert!(padded.contains("line 3 names the columns time,light,a,b"), "{padded}");
     let more = fault(b"time,light\n1,2,3\n", true);
     assert!(more.contains("line 1 names the columns time,light"), "{more}");
     assert!(fault(b"Ready.\n1,2,3\n", true).contains("--names"));
