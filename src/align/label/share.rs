@@ -6,8 +6,9 @@
 //!
 //! The second derivative is taken from the second difference over `REACH` s, to which the frames' noise adds no more
 //! than half their variance, not from the polynomial between two frames, where noise is multiplied by the squared frame
-//! rate; the rate from the first difference over 0.6 of it, about s, for the same reason. A motion that repeats itself after just that time comes back to the same angle, so the larger of it and the
-//! one over 0.6 of the time counts: both are whole periods from five and three on.
+//! rate; the rate from the first difference over 0.6 of it, about s, for the same reason. A motion that repeats itself
+//! after just that time comes back to the same angle, so the larger of it and the one over 0.6 of the time counts: both
+//! are whole periods from five and three on.
 
 use super::curve::{Between, Curve};
 use crate::align::Tie;

@@ -30,8 +30,8 @@ pub(super) fn on_another_clock(trace: &Trace) -> Option<String> {
     })
 }
 
-/// Contact that changes so often, and only at rows that are a multiple of so many apart, or of so long, seconds, is held
-/// (assumed; by chance ten changes are all a multiple of three rows apart once in 20,000 recordings).
+/// Contact that changes so often, and only at rows that are a multiple of so many apart, or of so long, seconds, is
+/// held (assumed; by chance ten changes are all a multiple of three rows apart once in 20,000 recordings).
 const CHANGES: usize = 10;
 const HELD_ROWS: usize = 3;
 const HELD_S: f64 = 0.03;
