@@ -186,7 +186,7 @@ mod tests {
         };
         assert!(rounded(0.01).is_some_and(|said| said.starts_with("VP1 takes 5 values in 400 rows")));
         assert_eq!(
-            [rounded(0.002), takes_few_values("VP1", &[1.0, 1.5, f64::NAN, 1.2]), takes_few_values("VP1", &[])],
+            [rounded(0.0005), takes_few_values("VP1", &[1.0, 1.5, f64::NAN, 1.2]), takes_few_values("VP1", &[])],
             [(); 3].map(|()| None)
         );
     }
