@@ -11,12 +11,13 @@ const SECOND: usize = 5;
 const STILL_S: f64 = 0.5;
 
 /// Says what is wrong, if anything: the clock stands still at the beginning or the end or in the midst, jumps, or runs
-/// at another rate; or most readings do not agree. `middle_s` and `first_s` are taken off the readings' times and what
-/// they show.
+/// at another rate; or most readings do not agree. `room_s` is that of the clock and its usual screen; `middle_s` and
+/// `first_s` are taken off the readings' times and what they show.
 pub(super) fn diagnose(
     seen: &[Seen],
     agreed: &Agreed,
     resolution_s: f64,
+    room_s: f64,
     middle_s: f64,
     first_s: f64,
 ) -> Result<(), ClockFault> {
@@ -38,6 +39,9 @@ pub(super) fn diagnose(
             let (from_s, to_s) = (from.time_s + middle_s, to.time_s + middle_s);
             return Err(ClockFault::Stops { from_s, to_s, shown_s: from.shown_s + first_s });
         }
+    }
+    if let Some(jump) = parted(seen, agreed, room_s, middle_s) {
+        return Err(jump);
     }
     if let Some(rate) = other_rate(seen, resolution_s)
         && !most
@@ -114,8 +118,8 @@ pub(super) fn late(points: &[Point], hulls: &Hulls, room_s: f64, late_s: f64, mi
     let drift = end_s / hulls.half_s;
     let rate =
         (drift.abs() > MOST_DRIFT).then_some((room - room_s, LEFT_BY_RATE, ClockFault::Rate { rate: 1.0 + drift }));
-    let jumps =
-        JUMP_DRIFTS.into_iter().filter_map(|drift| jump(points, drift)).filter(|(.., by_s)| by_s.abs() >= JUMP_S);
+    let long = |k: usize| [&points[..k], &points[k..]].into_iter().all(|side| changes(side) >= SECOND);
+    let jumps = jumps(points).filter(|&(_, k, by_s)| by_s.abs() >= JUMP_S && long(k));
     let jumps = jumps.map(|(width_s, k, by_s)| {
         let at_s = 0.5 * (points[k - 1][0] + points[k][0]) + middle_s;
         (width_s - room_s, LEFT_BY_JUMP, ClockFault::Jumps { at_s, by_s })
@@ -132,6 +136,31 @@ pub(super) fn late(points: &[Point], hulls: &Hulls, room_s: f64, late_s: f64, mi
 fn changes(points: &[Point]) -> usize {
     let shown = |point: &Point| point[0] + point[1];
     points.windows(2).filter(|pair| (shown(&pair[1]) - shown(&pair[0])).abs() > 1e-4).count()
+}
+
+/// A jump that explains every reading that is refused, and that others between them agree with: of the digits on the
+/// other side of a jump by about the clock's resolution those near their change lie in the first clock's band too, and
+/// a tilted band holds the more of them. Refused ones that are the first or the last of all are no such readings.
+fn parted(seen: &[Seen], agreed: &Agreed, room_s: f64, middle_s: f64) -> Option<ClockFault> {
+    let refused = || agreed.turns_s.iter().enumerate().filter(|(_, turns)| turns.is_none()).map(|(k, _)| k);
+    let (first, last) = (refused().next()?, refused().next_back()?);
+    let whole = last - first + 1 == refused().count() && (first == 0 || last + 1 == seen.len());
+    if whole && 2 * agreed.count > seen.len() || refused().count() < SECOND {
+        return None;
+    }
+    let turned = |turns_s: &mut f64, (seen, own_s): (&Seen, &Option<f64>)| {
+        *turns_s = own_s.unwrap_or(*turns_s);
+        Some([seen.time_s, seen.shown_s + *turns_s - seen.time_s])
+    };
+    let points: Vec<Point> = seen.iter().zip(&agreed.turns_s).scan(0.0, turned).collect();
+    let explains = |&(width_s, _, by_s): &(f64, usize, f64)| width_s <= room_s + LATE_S && by_s.abs() >= JUMP_S;
+    let (_, k, by_s) = jumps(&points).filter(explains).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(ClockFault::Jumps { at_s: 0.5 * (points[k - 1][0] + points[k][0]) + middle_s, by_s })
+}
+
+/// The best jump at each of the drifts that one is looked for with.
+fn jumps(points: &[Point]) -> impl Iterator<Item = (f64, usize, f64)> {
+    JUMP_DRIFTS.into_iter().filter_map(|drift| jump(points, drift))
 }
 
 /// Where readings of a clock of this drift are parted so that those before and those after lie the closest: how close,
@@ -152,8 +181,7 @@ fn jump(points: &[Point], drift: f64) -> Option<(f64, usize, f64)> {
     let sides = [&points[..k], &points[k..]];
     // Not the middles: of digits that are misread now and then, those that are left may differ.
     let [before, after] = sides.map(|side| median_of(side.iter().map(|point| point[1] - drift * point[0])));
-    let by_s = after? - before?;
-    sides.into_iter().all(|side| changes(side) >= SECOND).then_some((wider(k), k, by_s))
+    Some((wider(k), k, after? - before?))
 }
 
 /// The clock's rate where at another one most of the readings agree that are refused; `room_s`: of the clock and its

@@ -160,7 +160,7 @@ pub fn fit(
     let given_s = refresh_hz.filter(|&hz| hz > 0.0).map(|hz| 1.0 / hz);
     let usual_s = given_s.unwrap_or(USUAL_SCREEN_S).max(redrawn_s.unwrap_or(0.0));
     let mut agreed = most_agreed(&seen, resolution_s, usual_s, wraps_s);
-    match diagnose::diagnose(&seen, &agreed, resolution_s, place.time_s, place.shown_s) {
+    match diagnose::diagnose(&seen, &agreed, resolution_s, resolution_s + usual_s, place.time_s, place.shown_s) {
         Ok(()) | Err(ClockFault::Contradictory { .. }) if agreed.count < FEWEST => return Err(too_few(agreed.count)),
         other => other?,
     }
