@@ -21,7 +21,8 @@ pub(super) enum JoinError {
     Table(#[from] TableError),
     #[error(
         "{}: what was filmed from {from_s} s on overlaps with what was filmed in {} up to {to_s} s, of one subject and \
-         session; leave one out, or give the recordings sessions of their own",
+         session; leave one out, or give the recordings sessions of their own: `--session`, in a pipeline a key \
+         `session`",
         later.display(),
         earlier.display()
     )]

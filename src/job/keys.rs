@@ -22,6 +22,14 @@ impl Keys {
         Self(names.into_iter().filter_map(|name| Some((name.to_owned(), self.0.get(name)?.clone()))).collect())
     }
 
+    /// The values of all other names, joined by spaces; none where there are no others.
+    #[must_use]
+    pub fn others(&self, name: &str) -> Option<String> {
+        let others: Vec<&str> =
+            self.0.iter().filter(|(own, _)| *own != name).map(|(_, value)| value.as_str()).collect();
+        (!others.is_empty()).then(|| others.join(" "))
+    }
+
     /// Do both say the same where they speak of the same?
     #[must_use]
     pub fn agree(&self, other: &Self) -> bool {

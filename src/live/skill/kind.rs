@@ -8,10 +8,11 @@ use crate::log::ReadingCost;
 use crate::predictor::DataFile;
 use crate::stages::Step;
 
-/// A recording; a trial is what the key `trial` says, else the session.
+/// A recording; a trial is what the key `trial` says, else the session, else all keys but the person's.
 fn recording(at: &At) -> DataFile {
     let file = DataFile::from(at);
-    DataFile { session: at.keys.get("trial").map(str::to_owned).or(file.session), ..file }
+    let trial = at.keys.get("trial").map(str::to_owned);
+    DataFile { session: trial.or(file.session).or_else(|| at.keys.others("subject")), ..file }
 }
 
 impl Job for SkillOptions {
@@ -23,7 +24,7 @@ impl Job for SkillOptions {
         ],
         &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::pictures("")],
     )
-    .revision(9);
+    .revision(10);
 
     fn checked(self) -> Result<Self, OptionFault> {
         let faults = self.faults();

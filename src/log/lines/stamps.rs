@@ -204,7 +204,7 @@ fn date_or_time(cell: &[u8], day_first: &mut Option<bool>) -> Result<Moment, Str
     let (date, time, offset) = match &pieces {
         Some(pieces) => (pieces.date(), pieces.time().ok_or_else(|| unknown(cell))?, pieces.to_numeric_offset()),
         None => {
-            let other = other_date(text, day_first).map_err(|help| unknown(cell) + help)?;
+            let other = other_date(&text.replace(',', "."), day_first).map_err(|help| unknown(cell) + help)?;
             (other.date(), other.time(), None)
         }
     };
@@ -221,7 +221,7 @@ fn date_or_time(cell: &[u8], day_first: &mut Option<bool>) -> Result<Moment, Str
 
 /// The seconds of `9:20:58.216 PM`.
 fn half_day(text: &str) -> Option<f64> {
-    let time = BrokenDownTime::parse("%I:%M:%S%.f %p", text).ok()?.to_time().ok()?;
+    let time = BrokenDownTime::parse("%I:%M:%S%.f %p", text.replace(',', ".")).ok()?.to_time().ok()?;
     Some(time.duration_since(Time::midnight()).as_secs_f64())
 }
 
@@ -332,6 +332,8 @@ mod tests {
             ("1970-01-02 20:18:58.629079887", 159_538.629_079_887, 86_400.0),
             ("10/21/2021 9:20:58.216642589 AM", at, 1_634_774_400.0),
             ("21/10/2021 09:20:58.216642589", at, 1_634_774_400.0),
+            ("21/10/2021 09:20:58,216642589", at, 1_634_774_400.0),
+            ("21-Oct-2021 09:20:58,216642589", at, 1_634_774_400.0),
             ("21-Oct-2021 09:20:58.216642589", at, 1_634_774_400.0),
         ] {
             let (time, midnight, notes) = seconds(&[text], None);
@@ -347,7 +349,7 @@ mod tests {
         assert_eq!((time[2], midnight, notes), (86_400.0, Some(0.0), 1));
         assert!((time[3] - 86_399.95).abs() <= 1e-9 && (time[4] - 86_400.1).abs() <= 1e-9);
         assert_eq!(seconds(&["00:00:01", "00:00:00"], None).0, [1.0, 0.0]);
-        assert_eq!(seconds(&["11:59:59.5 AM", "12:00:00 PM", "1:00:01 PM"], None).0, [43_199.5, 43_200.0, 46_801.0]);
+        assert_eq!(seconds(&["11:59:59,5 AM", "12:00:00 PM", "1:00:01 PM"], None).0, [43_199.5, 43_200.0, 46_801.0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::results::JobResults;
 use crate::input;
 use crate::input::is_special;
 use crate::log::{Columns, LogHeader};
-use crate::photo::{MASKS, stem_of_mask};
+use crate::photo::{MASKS, PhotoSet, stem_of_mask};
 use crate::photograph::PICTURES;
 use crate::pipeline::store::MadeBefore;
 use crate::table::{Table, column_names};
@@ -35,7 +35,11 @@ pub(super) struct Inventory {
     pub(super) passed: Vec<Passed>,
     /// How many names are not UTF-8, which no pattern has.
     pub(super) unnamed: usize,
+    /// Those that `photo_table` doesn't name.
     pub(super) photos: Vec<String>,
+    pub(super) photo_table: Option<PhotoTable>,
+    /// Files called as such a table that are none, or further ones, and why.
+    pub(super) other_photo_tables: Vec<String>,
     /// Pictures that are masks of photographs, by their names.
     pub(super) masks: Vec<String>,
     pub(super) videos: Vec<String>,
@@ -75,6 +79,15 @@ pub(super) enum Reason {
     NoRecords,
 }
 
+/// A `photos.csv`, which says whose photographs are, and in which pose.
+#[derive(Debug)]
+pub(super) struct PhotoTable {
+    pub(super) path: String,
+    pub(super) photos: usize,
+    /// Whether it names outlines.
+    pub(super) outlines: bool,
+}
+
 /// A table that names files.
 #[derive(Debug, Default)]
 pub(super) struct Sessions {
@@ -112,7 +125,7 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     input::list(folder)?;
     let mut found = Inventory::default();
     walk(folder, "", 0, false, &mut found);
-    let mut tables = Vec::new();
+    let (mut tables, mut photo_tables) = (Vec::new(), Vec::new());
     let own: Vec<String> = found.all.iter().filter(|path| !found.not_own.contains(*path)).cloned().collect();
     for path in own {
         match sort(&folder.join(&path)) {
@@ -132,9 +145,13 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
             }
             Sort::Set => found.sets.push(path),
             Sort::Silent => {}
+            Sort::Other if folder_and_name(&path).1 == "photos.csv" => photo_tables.push(path),
             Sort::Other if is_table(&path) => tables.push(path),
             Sort::Other => found.unknown.push(path),
         }
+    }
+    for path in photo_tables {
+        name_photographs(folder, path, &mut found);
     }
     let photos = found.photos.iter().filter(|path| of_mask(path).is_none());
     let stems: BTreeSet<String> = photos.map(|path| folder_and_stem(path).1).collect();
@@ -147,6 +164,28 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
         }
     }
     Ok(found)
+}
+
+/// Takes what a `photos.csv` names out of the photographs whose names are to say what they are.
+fn name_photographs(folder: &Path, path: String, found: &mut Inventory) {
+    let beside = folder.join(folder_and_name(&path).0);
+    let set = match PhotoSet::open(&beside, &[]) {
+        Ok(_) if found.photo_table.is_some() => {
+            found.other_photo_tables.push(format!("{path}: one such table is used; write an input for this one"));
+            return;
+        }
+        Ok(set) => set,
+        Err(why) => {
+            found.other_photo_tables.push(why.to_string());
+            return;
+        }
+    };
+    let whole = |file: &Path| file.canonicalize().ok();
+    let outlines = || set.photos.iter().filter_map(|photo| photo.outline.as_deref());
+    let named: BTreeSet<_> = set.photos.iter().map(|photo| &*photo.path).chain(outlines()).filter_map(whole).collect();
+    found.photos.retain(|photo| whole(&folder.join(photo)).is_none_or(|photo| !named.contains(&photo)));
+    let outlines = outlines().next().is_some();
+    found.photo_table = Some(PhotoTable { path, photos: set.photos.len(), outlines });
 }
 
 /// Walks a folder; of one that is passed over only the names are taken.
@@ -233,9 +272,14 @@ fn is_table(name: &str) -> bool {
     name.ends_with(".csv") || name.ends_with(".parquet")
 }
 
+/// A path's folder, and its name.
+fn folder_and_name(path: &str) -> (&str, &str) {
+    path.rsplit_once('/').unwrap_or(("", path))
+}
+
 /// A path's folder, and its name without ending, in small letters.
 fn folder_and_stem(path: &str) -> (String, String) {
-    let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+    let (folder, name) = folder_and_name(path);
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     (folder.to_lowercase(), stem.to_lowercase())
 }
@@ -257,8 +301,13 @@ fn sort(path: &Path) -> Sort {
         "csv" | "parquet" => table(path),
         "gz" if name.ends_with(".csv.gz") => log(path),
         "xdf" => Sort::Log { forces: false },
+        "tsv" | "dat" | "asc" | "lvm" => log(path),
+        "txt" => match log(path) {
+            Sort::Other => Sort::Silent,
+            of_text => of_text,
+        },
         // Outlines lie beside photographs, reports beside results.
-        "json" | "html" | "md" | "txt" => Sort::Silent,
+        "json" | "html" | "md" => Sort::Silent,
         _ => Sort::Other,
     }
 }

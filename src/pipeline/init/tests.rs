@@ -106,6 +106,49 @@ fn photographs_become_maps() {
 }
 
 #[test]
+fn a_table_of_photographs_says_whose_they_are() {
+    let files = [
+        ("p/IMG_1.JPG", ""),
+        ("p/IMG_2.JPG", ""),
+        ("p/IMG_3.JPG", ""),
+        ("p/photos.csv", "file;subject;pose\nIMG_1.JPG;anna;normal\nIMG_2.JPG;anna;flexion\nIMG_3.JPG;ben;normal\n"),
+    ];
+    let (text, tasks) = proposed(&files);
+    assert!(text.contains("table = \"p/photos.csv\"\nkeys = [\"subject\", \"pose\"]"), "{text}");
+    assert_eq!(tasks, ["normalized/anna", "normalized/ben", "maps"]);
+    let left_out = |files: &[(&str, &str)]| propose(folder(files).path(), "").unwrap().left_out;
+    assert_eq!(left_out(&files), [""; 0]);
+    let said = left_out(&[&files[..], &[("q/IMG_4.JPG", "")]].concat());
+    assert!(said[0].contains("doesn't name, which are not used: q/IMG_4.JPG"), "{said:?}");
+    // Its outlines are no photographs.
+    let drawn = "file,subject,pose,outline\nIMG_1.JPG,anna,normal,IMG_2.JPG\nIMG_3.JPG,ben,normal,\n";
+    let drawn = [files[0], files[1], files[2], ("p/photos.csv", drawn)];
+    let (text, _) = proposed(&drawn);
+    assert!(text.contains("photo = \"photos.file\"\noutlines = \"photos.outline\"\n"), "{text}");
+    assert_eq!(left_out(&drawn), [""; 0]);
+    // One that can't be read is not silently passed over, nor is a second one.
+    let said = left_out(&[files[0], files[1], ("p/photos.csv", "name,who\nIMG_1.JPG,anna\n")]);
+    assert!(said[0].contains("it needs file,subject,pose"), "{said:?}");
+    let second = [("q/IMG_1.JPG", ""), ("q/photos.csv", "file,subject,pose\nIMG_1.JPG,cleo,normal\n")];
+    let said = left_out(&[&files[..], &second].concat());
+    assert!(said[0].starts_with("q/photos.csv: one such table is used"), "{said:?}");
+}
+
+#[test]
+fn logs_of_other_endings_are_logs() {
+    let tabs = LOG.replace(',', "\t");
+    for ending in ["txt", "tsv", "dat", "asc", "lvm"] {
+        let names = ["anna", "ben"].map(|name| format!("{name}.{ending}"));
+        let (text, tasks) = proposed(&[(&names[0], &tabs), (&names[1], &tabs), ("notes.txt", "as it went: well\n")]);
+        assert!(text.contains(&format!("2 logs of photodiodes: {{session}}.{ending}")), "{text}");
+        assert_eq!(tasks, ["force"]);
+    }
+    let mixed = [("a/1.csv", LOG), ("a/2.csv", LOG), ("b/1.txt", &tabs)];
+    let said = propose(folder(&mixed).path(), "").unwrap().left_out;
+    assert!(said.len() == 1 && said[0].contains("not used: b/1.txt"), "{said:?}");
+}
+
+#[test]
 fn results_and_masks_are_no_photographs() {
     let photos = [("nails/rest/S01.png", ""), ("nails/rest/S02.png", ""), ("nails/press/S01.png", "")];
     let results = [

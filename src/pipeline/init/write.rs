@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::look::{Inventory, Passed, Reason};
+use super::look::{Inventory, Passed, PhotoTable, Reason};
 use super::shape::{NamePattern, PlaceNames, shape};
 use crate::pipeline::items::pattern::{Listed, Match, Pattern};
 
@@ -124,6 +124,12 @@ pub(super) fn passed_over(found: &Inventory) -> Vec<(String, bool)> {
 
 impl Draft<'_> {
     fn photographs(&mut self, found: &Inventory) {
+        self.left_out.extend(found.other_photo_tables.iter().cloned());
+        self.notes.extend(found.other_photo_tables.iter().cloned());
+        if let Some(table) = &found.photo_table {
+            self.photo_table(table, &found.photos);
+            return;
+        }
         let Some(photos) = self.files("photos", "photographs of nails", &found.photos, PlaceNames::Nails) else {
             return;
         };
@@ -153,10 +159,34 @@ impl Draft<'_> {
             }
             None => ("", ""),
         };
+        self.maps("photos", outlines, of_masks);
+    }
+
+    /// Photographs as a table names them.
+    fn photo_table(&mut self, table: &PhotoTable, unnamed: &[String]) {
+        let PhotoTable { path, photos, outlines } = table;
+        self.notes.push(format!("{photos} photographs of nails, with subjects and poses: {path}"));
+        if !unnamed.is_empty() {
+            let said = format!(
+                "photographs that {path} doesn't name, which are not used: {}; give each a row there",
+                listed(unnamed)
+            );
+            self.notes.push(said.clone());
+            self.left_out.push(said);
+        }
+        let path = quoted(&format!("{}{path}", self.from));
+        let _ = write!(self.inputs, "\n[inputs.photos]\ntable = {path}\nkeys = [\"subject\", \"pose\"]\n");
+        match outlines {
+            true => self.maps("photos.file", "outlines = \"photos.outline\"\n", "the table, "),
+            false => self.maps("photos.file", "", ""),
+        }
+    }
+
+    fn maps(&mut self, photos: &str, outlines: &str, of_masks: &str) {
         let _ = write!(
             self.stages,
             "\n# Each nail upright and of one size, in the green channel; outlines from {of_masks}<photo>.json, else \
-             detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"photos\"\n{outlines}\n\
+             detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"{photos}\"\n{outlines}\n\
              # Mean and standard deviation over subjects, for each pose.\n[stage.maps]\njob = \"maps\"\nsums = \
              \"normalized\"\n"
         );
