@@ -87,8 +87,9 @@ fn contrasts_of_phantoms_are_those_of_their_spectra() {
             let made = number(row, "contrast");
             assert!((made - exact).abs() <= CONTRAST_ERROR, "{pose} {name}: {made}, exactly {exact}");
             assert!((number(row, "white") - number(row, "red") - made).abs() <= 2e-6);
+            // Of light: 2 to 2.4 times that of values, as sRGB's curve is as steep.
             let relative = number(row, "relative");
-            assert!(relative > 0.9 * made / number(row, "white") && relative < 1.1 * made / number(row, "red"));
+            assert!(relative > 1.8 * made / number(row, "white") && relative < 2.6 * made / number(row, "red"));
             assert!(number(row, "low") < made && made < number(row, "high"));
         }
         // The phantom's zones change green by 1, blue by 0.35, red by 0.10; shade and lunula change all.

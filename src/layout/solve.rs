@@ -1,7 +1,7 @@
 //! Every method's places for every number of photodiodes, with what they are worth to persons left out.
 //!
 //! The best, greedy, pivoted and D-optimal layouts are chosen again without each person and judged on that one, who
-//! still has a model of their own; the thesis' eight and all candidates are judged as they are. Of maps a subject's
+//! still has a model of their own (`held_out`); the thesis' eight and all candidates are judged as they are. Of maps a subject's
 //! pictures are put to one of every two poses by the rule of the others, and the error is the share put to the wrong
 //! one: judged by those who chose, two poses that do not differ are far apart already at few places of many (of 8 + 8
 //! subjects 0.0003 for 4 of 140 cells, in place of 0.5). The interval is that of the mean over persons (Student's t).
@@ -126,7 +126,7 @@ impl<'a> Solver<'a> {
     /// What places are worth to a person, or a subject of maps, who is left out.
     fn worth(&self, part: usize, places: &[usize]) -> Option<f64> {
         match &self.given.parts {
-            Parts::Persons => Some(self.all.costs_of_persons(places)[part]),
+            Parts::Persons(each) => each[part].error(places, self.options.noise),
             Parts::Subjects(each) => each[part].confused(places, self.options.noise),
         }
     }
@@ -153,7 +153,7 @@ impl<'a> Solver<'a> {
         // Of persons an error is in units of the target's own spread, and has no upper limit.
         let most = match &self.given.parts {
             Parts::Subjects(_) => 1.0,
-            Parts::Persons => f64::INFINITY,
+            Parts::Persons(_) => f64::INFINITY,
         };
         let interval = [(spread.mean - half).max(0.0), (spread.mean + half).max(unseen).min(most)];
         Some(LeftOut { error: spread.mean, se, interval })

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::places::Place;
 use crate::layout::error::LayoutError;
+use crate::layout::held_out::OwnRows;
 use crate::layout::options::LayoutOptions;
 
 #[derive(Debug, Clone)]
@@ -38,8 +39,8 @@ pub(in crate::layout) struct Target {
 /// What is left out for the intervals, one after the other.
 #[derive(Debug, Clone)]
 pub(in crate::layout) enum Parts {
-    /// Each person, of whom the layout chosen without them is then judged.
-    Persons,
+    /// Each person, in whose rows the layout chosen without them is then judged.
+    Persons(Vec<OwnRows>),
     /// Each subject of maps, whose pictures are put to poses by the layout chosen without them.
     Subjects(Vec<WithoutSubject>),
 }
@@ -78,8 +79,8 @@ impl Given {
     /// How many parts are left out, one after the other.
     pub(in crate::layout) fn parts(&self) -> usize {
         match &self.parts {
-            Parts::Persons if self.moments.len() < 2 => 0,
-            Parts::Persons => self.moments.len(),
+            Parts::Persons(each) if each.len() < 2 => 0,
+            Parts::Persons(each) => each.len(),
             Parts::Subjects(each) => each.len(),
         }
     }
@@ -92,7 +93,7 @@ impl Given {
         options: &LayoutOptions,
     ) -> Option<LayoutProblem> {
         match &self.parts {
-            Parts::Persons => all.without(part),
+            Parts::Persons(_) => all.without(part),
             Parts::Subjects(each) => self.problem_of(std::slice::from_ref(&each[part].moments), options).ok(),
         }
     }

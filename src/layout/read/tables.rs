@@ -20,6 +20,7 @@ use super::given::{Given, LeftOutCandidates, Parts, PersonFigures, Target};
 use super::places::{Place, cells, is_photodiode, photodiodes};
 use crate::input::copies;
 use crate::layout::error::LayoutError;
+use crate::layout::held_out::OwnRows;
 use crate::layout::options::{LayoutInputs, LayoutOptions};
 use crate::log::{doubts, without_faults};
 use crate::predictor::{DataFile, cell, contradictions};
@@ -89,7 +90,7 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
         criterion: Criterion::Error,
         places,
         moments: Vec::new(),
-        parts: Parts::Persons,
+        parts: Parts::Persons(Vec::new()),
         persons: Vec::new(),
         targets: targets.iter().map(|name| Target { name: name.clone(), sd: Vec::new() }).collect(),
         left_out,
@@ -149,6 +150,9 @@ impl Given {
         let incomplete = rows.count - whole.len();
         self.persons.push(PersonFigures { name: person.to_owned(), rows: whole.len(), incomplete });
         self.moments.push(moments);
+        if let Parts::Persons(each) = &mut self.parts {
+            each.push(OwnRows { x, y });
+        }
         self.rows = self.rows.min(whole.len());
         Ok(())
     }

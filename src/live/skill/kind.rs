@@ -53,3 +53,22 @@ impl Job for SkillOptions {
         Ok(report.made(Vec::new()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Keys;
+
+    #[test]
+    fn a_trial_is_called_by_its_keys() {
+        let of = |keys: &[(&str, &str)]| {
+            let keys = Keys(keys.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect());
+            recording(&At { role: "recordings", keys, path: "x/predicted.csv".into(), name: "p".to_owned() }).session
+        };
+        let (subject, repetition) = (("subject", "anna"), ("repetition", "2"));
+        assert_eq!(of(&[subject, repetition, ("session", "1"), ("trial", "3")]).as_deref(), Some("3"));
+        assert_eq!(of(&[subject, repetition, ("session", "1")]).as_deref(), Some("1"));
+        assert_eq!(of(&[subject, repetition, ("kind", "touch")]).as_deref(), Some("touch 2"));
+        assert_eq!(of(&[subject]), None);
+    }
+}

@@ -18,6 +18,7 @@ pub(crate) use detail::{SHARP, detail};
 pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
 pub use options::{Normalization, Resample};
 pub use plane::Channel;
+pub(super) use plane::linear_from_srgb;
 
 /// Full scale of a [`Normalized`] picture's levels.
 pub const FULL_SCALE: u16 = u16::MAX;

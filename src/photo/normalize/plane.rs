@@ -145,7 +145,7 @@ struct Samples {
 }
 
 /// IEC 61966-2-1: light, as a fraction of white, from the encoded fraction.
-fn linear_from_srgb(encoded: f32) -> f32 {
+pub(in crate::photo) fn linear_from_srgb(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -137,7 +137,7 @@ pub fn run(
             }
         };
         nails.write(&staging)?;
-        let compared = compare_channels(&samples, &staging, &stages)?;
+        let compared = compare_channels(&samples, options.normalization.linear, &staging, &stages)?;
         watch.go_on()?;
         let mut report = of_photos(findings, poses, watch).timed(&stages);
         if let Some(compared) = compared {
@@ -157,6 +157,7 @@ pub fn run(
 /// Compares the channels of colour photographs, where that was requested and there are some.
 fn compare_channels(
     samples: &[Sample<'_>],
+    is_linear: bool,
     staging: &Staging,
     stages: &Stages,
 ) -> Result<Option<Compared>, WriteError> {
@@ -164,7 +165,7 @@ fn compare_channels(
         return Ok(None);
     }
     stages.time("compare channels", || {
-        let mut compared = channels::compare(samples);
+        let mut compared = channels::compare(samples, is_linear);
         channels::write(&mut compared.figures, staging)?;
         Ok(Some(compared))
     })

@@ -36,7 +36,7 @@ fn picture(pattern: Pattern, contrast: [f64; 3], noise_sd: [f64; 3], rng: &mut C
 fn contrasts(pictures: Vec<Cells>) -> Compared {
     let photos: Vec<Photo> = (0..pictures.len()).map(photo).collect();
     let samples: Vec<Sample<'_>> = photos.iter().zip(pictures).map(|(photo, cells)| Sample { photo, cells }).collect();
-    compare(&samples)
+    compare(&samples, false)
 }
 
 /// What green shows where zones are the lightest and darkest quarter of the subject's own green.
@@ -46,6 +46,22 @@ fn naive(cells: &Cells) -> f64 {
     let quarter = values.len() / 4;
     let mean = |of: &[u16]| of.iter().map(|&v| f64::from(v)).sum::<f64>() / of.len() as f64 / f64::from(FULL_SCALE);
     mean(&values[values.len() - quarter..]) - mean(&values[..quarter])
+}
+
+#[test]
+fn shade_alone_is_the_same_relative_contrast_in_every_channel() {
+    // Light that falls off by 35 % over nails of one colour, in sRGB.
+    let encoded = |light: f64| if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+    let of = |subject: usize| {
+        let levels = [0.55, 0.30, 0.22].map(|colour| {
+            let lit = |at: usize| 1.0 - 0.35 * ((at % GRID) as f64 + 0.5) / GRID as f64 - 0.01 * subject as f64;
+            (0..GRID * GRID).map(|at| (encoded(colour * lit(at)) * f64::from(FULL_SCALE)).round() as u16).collect()
+        });
+        Cells { levels, seen: vec![true; GRID * GRID] }
+    };
+    let rows = contrasts((0..6).map(of).collect()).figures.rows;
+    let relative: Vec<f64> = rows.iter().map(|row| row.relative.expect("measured").mean).collect();
+    assert!(relative.iter().all(|one| (one - relative[0]).abs() < 1e-3 && *one > 0.2), "{relative:?}");
 }
 
 #[test]

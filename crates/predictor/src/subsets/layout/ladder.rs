@@ -218,12 +218,6 @@ impl LayoutProblem {
         self.ladder(places).cost()
     }
 
-    /// What places cost each person.
-    #[must_use]
-    pub fn costs_of_persons(&self, places: &[usize]) -> Vec<f64> {
-        self.ladder(places).top().q.chunks(self.columns).map(|own| mean_cost(self.criterion, own)).collect()
-    }
-
     /// What each column's places explain, q, by person.
     #[must_use]
     pub fn explained(&self, places: &[usize]) -> Vec<Vec<f64>> {
