@@ -90,6 +90,9 @@ pub struct AlignOptions {
     /// What the finger does, for the names of the BIDS dataset [default: bending]
     #[arg(long)]
     pub task: Option<String>,
+    /// The recording's number among several of one subject, session and task, for the names of the BIDS dataset
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub run: Option<u32>,
 }
 
 /// Where results go.

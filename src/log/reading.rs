@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::{AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
 use crate::log::naming::columns::is_led;
+use crate::log::naming::groups;
 use crate::log::naming::header::is_foreign;
 use crate::table::{TableError, column_names};
 
@@ -27,6 +28,8 @@ pub struct LitRows {
     pub samples: Samples,
     /// The loads between the lit rows, before the first and after the last.
     pub unlit: UnlitLoads,
+    /// The first row of each session, subject and trajectory, where the file has such columns.
+    pub groups: Vec<(usize, [String; 3])>,
     /// What is worth saying on the file.
     pub notes: Vec<String>,
 }
@@ -122,7 +125,11 @@ impl LogReading {
     /// Reads a log and takes the ambient light away.
     pub fn lit_rows(&self, path: &Path) -> Result<LitRows, LogError> {
         let log = Log::read(path, &self.columns)?;
-        let samples = samples(&log, &self.ambient)?;
-        Ok(LitRows { unlit: UnlitLoads::of(&log), notes: log.notes, samples })
+        let mut samples = samples(&log, &self.ambient)?;
+        let groups = groups::of_log(path, &samples.time_s).unwrap_or_else(|why| {
+            samples.warnings.push(why);
+            Vec::new()
+        });
+        Ok(LitRows { unlit: UnlitLoads::of(&log), notes: log.notes, groups, samples })
     }
 }

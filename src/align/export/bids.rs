@@ -1,8 +1,9 @@
 //! Joint angles as BIDS Motion (doi:10.1038/s41597-024-03559-8; specification 1.9 and later).
 //!
 //! `sub-<subject>/[ses-<session>/]motion/` gets `_motion.tsv` (no line of names, `n/a` where there is no angle),
-//! `_channels.tsv` and `_motion.json`. Channels: `LATENCY`, each frame's time on the log's clock, seconds; for each
-//! joint `JNTANG`, degrees, positive in flexion, and, where the table has it, its standard error as `MISC`. In a new
+//! `_channels.tsv` and `_motion.json`. Channels: `LATENCY`, each frame's time from the first frame, seconds; as `MISC`
+//! the same on the log's clock; for each joint `JNTANG`, degrees, positive in flexion, and, where the table has it, its
+//! standard error as `MISC`. Another recording of the names stands: it is not replaced, a run of its own is needed. In a new
 //! folder `dataset_description.json`, `README` and `participants.tsv` are written too. In a dataset that stands they
 //! are left as they are, but for a participant who is new: a row is added.
 
@@ -24,15 +25,18 @@ pub(crate) struct BidsNames {
     session: Option<String>,
     task: String,
     tracksys: String,
+    run: Option<u32>,
 }
 
 impl BidsNames {
-    /// Checks the names: letters and digits of ASCII; a subject is needed.
+    /// Checks the names: letters and digits of ASCII; a subject is needed. `run` is the recording's number among several
+    /// of these names.
     pub(crate) fn new(
         subject: Option<&str>,
         session: Option<&str>,
         task: &str,
         tracksys: &str,
+        run: Option<u32>,
     ) -> Result<Self, ExportError> {
         let checked = |entity, label: Option<&str>| match label {
             Some(label) if !label.is_empty() && label.bytes().all(|b| b.is_ascii_alphanumeric()) => {
@@ -45,6 +49,7 @@ impl BidsNames {
             session: session.map(|label| checked("session", Some(label))).transpose()?,
             task: checked("task", Some(task))?,
             tracksys: checked("tracksys", Some(tracksys))?,
+            run,
         })
     }
 
@@ -60,14 +65,15 @@ impl BidsNames {
     /// What the names of the recording's files begin with.
     fn stem(&self) -> String {
         let session = self.session.as_ref().map_or(String::new(), |session| format!("_ses-{session}"));
-        format!("sub-{}{session}_task-{}_tracksys-{}", self.subject, self.task, self.tracksys)
+        let run = self.run.map_or(String::new(), |run| format!("_run-{run}"));
+        format!("sub-{}{session}_task-{}_tracksys-{}{run}", self.subject, self.task, self.tracksys)
     }
 }
 
 /// Writes the angles into the dataset that stands, or is to stand, in the folder `root`; returns the files' places.
 ///
 /// # Errors
-/// Fewer than two frames, which have no sampling frequency; a `participants.tsv` without `participant_id`; a file that
+/// Fewer than two frames, which have no sampling frequency; another recording of these names; a `participants.tsv` without `participant_id`; a file that
 /// can't be written.
 pub(crate) fn bids(
     places: &mut Places,
@@ -93,9 +99,16 @@ pub(crate) fn bids(
     }
     let file = |ending: &str| root.join(names.folder()).join(format!("{}_{ending}", names.stem()));
     let sidecar = sidecar(&file("motion.json"), names, &times_s, &channels)?;
+    let (motion, rows) = (file("motion.tsv"), channels.rows(posture, &times_s));
+    if input::read_text(&motion).is_ok_and(|standing| standing != rows) {
+        let what = "has other angles: is it another recording of this subject, session and task? Then say --run 2 (or \
+                    the next number); remove it where it is an older result of this one"
+            .to_owned();
+        return Err(ExportError::Unfit { path: motion, what });
+    }
     files.push((file("motion.json"), json_text(&sidecar)));
     files.push((file("channels.tsv"), channels.table(posture)));
-    files.push((file("motion.tsv"), channels.rows(posture, &times_s)));
+    files.push((motion, rows));
     for (path, text) in &files {
         places.write(path, text)?;
     }
@@ -119,7 +132,8 @@ impl Channels {
     /// `channels.tsv`.
     fn table(&self, posture: &Posture) -> String {
         let mut text = "name\tcomponent\ttype\ttracked_point\tunits\tdescription\n\
-                        time\tn/a\tLATENCY\tn/a\ts\tthe frame's time on the log's clock\n"
+                        time\tn/a\tLATENCY\tn/a\ts\tthe frame's time from the first frame\n\
+                        log_time\tn/a\tMISC\tn/a\ts\tthe frame's time on the log's clock\n"
             .to_owned();
         for (joint, &with_error) in posture.joints.iter().map(|joint| plain(joint)).zip(&self.with_error) {
             // A String takes all that is written.
@@ -135,6 +149,8 @@ impl Channels {
     fn rows(&self, posture: &Posture, times_s: &[f64]) -> String {
         let mut text = String::new();
         for (frame, &time_s) in times_s.iter().enumerate() {
+            text.push_str(&fixed(time_s - times_s[0], TIME_DECIMALS, "n/a"));
+            text.push('\t');
             text.push_str(&fixed(time_s, TIME_DECIMALS, "n/a"));
             for (joint, &with_error) in self.with_error.iter().enumerate() {
                 let error = with_error.then_some(posture.sds_deg[joint][frame]);
@@ -177,10 +193,10 @@ fn sidecar(
         "RecordingDuration": rounded(last_s - first_s, 1e6),
         "RecordingType": "continuous",
         "MissingValues": "n/a",
-        "MotionChannelCount": 1 + joints + errors,
+        "MotionChannelCount": 2 + joints + errors,
         "JNTANGChannelCount": joints,
         "LATENCYChannelCount": 1,
-        "MISCChannelCount": errors,
+        "MISCChannelCount": 1 + errors,
         "ACCELChannelCount": 0,
         "ANGACCELChannelCount": 0,
         "GYROChannelCount": 0,
@@ -206,9 +222,9 @@ fn description() -> serde_json::Value {
 /// `README` of a new dataset.
 const README: &str = "Joint angles of a finger, measured in videos of coloured markers by lunula.\n\
     \n\
-    Each row of a *_motion.tsv is a frame of the video. The channel `time` is the frame's time on the clock of the \
-    log that was \n\
-    recorded along with the video (photodiodes, forces), in seconds. Angles are in degrees, positive in flexion; n/a \
+    Each row of a *_motion.tsv is a frame of the video. The channel `time` is the frame's time from the first one, \
+    `log_time` that \n\
+    on the clock of the log that was recorded along with the video (photodiodes, forces), in seconds. Angles are in degrees, positive in flexion; n/a \
     where a marker \n\
     was not seen. Nothing is interpolated.\n";
 

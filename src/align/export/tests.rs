@@ -58,14 +58,16 @@ fn a_bids_dataset_is_begun_and_continued() {
     let (_dir, folder) = folder("bids");
     let root = folder.join("set");
     let _ = std::fs::remove_dir_all(&root);
-    let write = |subject: &str, session: Option<&str>, posture: &Posture| {
-        let names = BidsNames::new(Some(subject), session, "bend", "camera").unwrap();
+    let write_run = |subject: &str, session: Option<&str>, posture: &Posture, run: Option<u32>| {
+        let names = BidsNames::new(Some(subject), session, "bend", "camera", run).unwrap();
         let mut places = Places::default();
-        let files = bids(&mut places, &root, &names, posture, &tie()).unwrap();
+        let files = bids(&mut places, &root, &names, posture, &tie())?;
         places.commit().unwrap();
         let names = files.iter().map(|f| f.strip_prefix(&root).unwrap().to_string_lossy().into_owned());
-        names.collect::<Vec<_>>()
+        Ok::<_, ExportError>(names.collect::<Vec<_>>())
     };
+    let write =
+        |subject: &str, session: Option<&str>, posture: &Posture| write_run(subject, session, posture, None).unwrap();
     let stem = "sub-01/motion/sub-01_task-bend_tracksys-camera_";
     let own = ["motion.json", "channels.tsv", "motion.tsv"];
     let mut all: Vec<String> = ["dataset_description.json", "README", "participants.tsv"].map(str::to_owned).to_vec();
@@ -74,8 +76,8 @@ fn a_bids_dataset_is_begun_and_continued() {
     let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
     assert_eq!(
         text(&all[5]),
-        "71.500000\t10.00000\t0.02000\t5.25000\n71.533400\t11.50000\t0.03000\tn/a\n71.566800\tn/a\tn/a\tn/a\n\
-         71.600200\t0.00000\t0.02000\t7.00000\n"
+        "0.000000\t71.500000\t10.00000\t0.02000\t5.25000\n0.033400\t71.533400\t11.50000\t0.03000\tn/a\n\
+         0.066800\t71.566800\tn/a\tn/a\tn/a\n0.100200\t71.600200\t0.00000\t0.02000\t7.00000\n"
     );
     let kinds: Vec<String> =
         text(&all[4]).lines().map(|line| line.split('\t').take(5).collect::<Vec<_>>().join(" ")).collect();
@@ -84,6 +86,7 @@ fn a_bids_dataset_is_begun_and_continued() {
         [
             "name component type tracked_point units",
             "time n/a LATENCY n/a s",
+            "log_time n/a MISC n/a s",
             "J2 n/a JNTANG J2 deg",
             "J2_sd n/a MISC J2 deg",
             "J3 n/a JNTANG J3 deg"
@@ -91,7 +94,7 @@ fn a_bids_dataset_is_begun_and_continued() {
     );
     let sidecar: serde_json::Value = serde_json::from_str(&text(&all[3])).unwrap();
     assert_eq!((&sidecar["TaskName"], &sidecar["SamplingFrequency"]), (&"bend".into(), &29.94.into()));
-    assert_eq!((&sidecar["MotionChannelCount"], &sidecar["JNTANGChannelCount"]), (&4.into(), &2.into()));
+    assert_eq!((&sidecar["MotionChannelCount"], &sidecar["JNTANGChannelCount"]), (&5.into(), &2.into()));
     // Another participant is added to what somebody wrote meanwhile; the rest of the dataset stays.
     std::fs::write(root.join("participants.tsv"), "participant_id\tage\nsub-01\t31").unwrap();
     std::fs::write(root.join("dataset_description.json"), text("dataset_description.json").replace("finger", "thumb"))
@@ -100,6 +103,14 @@ fn a_bids_dataset_is_begun_and_continued() {
     assert_eq!(second[0], "participants.tsv");
     assert_eq!(second[3], "sub-02/ses-a/motion/sub-02_ses-a_task-bend_tracksys-camera_motion.tsv");
     assert_eq!(text("participants.tsv"), "participant_id\tage\nsub-01\t31\nsub-02\tn/a\n");
+    // A second recording of these names replaces none.
+    let mut other = posture();
+    other.angles_deg[0][0] = 11.0;
+    let why = write_run("01", None, &other, None).unwrap_err().to_string();
+    assert!(why.contains("_motion.tsv") && why.contains("--run 2"), "{why}");
+    assert!(text(&all[5]).contains("\t10.00000\t"));
+    let second = write_run("01", None, &other, Some(2)).unwrap();
+    assert!(second.last().unwrap().ends_with("sub-01_task-bend_tracksys-camera_run-2_motion.tsv"), "{second:?}");
     // What a killed run left at the root goes, though nothing is written there.
     std::fs::write(root.join(".lunula-killed"), "half").unwrap();
     assert_eq!(write("01", None, &posture()).len(), 3, "written again: its own files only");
@@ -115,12 +126,12 @@ fn what_bids_has_no_place_for_is_told_and_leaves_no_trace() {
         (Some("1"), Some("pre-test"), "session"),
         (Some(""), None, "subject"),
     ] {
-        let error = BidsNames::new(subject, session, "bend", "camera").unwrap_err().to_string();
+        let error = BidsNames::new(subject, session, "bend", "camera", None).unwrap_err().to_string();
         assert!(error.contains(entity) && error.contains("letters and digits"), "{error}");
     }
     let dir = tempfile::tempdir().unwrap();
     let root = dir.path().join("a/set");
-    let names = BidsNames::new(Some("01"), None, "bend", "camera").unwrap();
+    let names = BidsNames::new(Some("01"), None, "bend", "camera", None).unwrap();
     let one = Posture { time_s: vec![0.0], ..posture() };
     let mut places = Places::default();
     let error = bids(&mut places, &root, &names, &one, &tie()).unwrap_err().to_string();

@@ -32,7 +32,7 @@ pub fn run(
     let mut results = Results::start(inputs, outputs)?;
     let names = outputs.bids.as_ref().map(|_| {
         let task = options.task.as_deref().unwrap_or("bending");
-        BidsNames::new(options.subject.as_deref(), options.session.as_deref(), task, "lunula")
+        BidsNames::new(options.subject.as_deref(), options.session.as_deref(), task, "lunula", options.run)
     });
     let names = names.transpose()?;
     let (posture, log) = rayon::join(

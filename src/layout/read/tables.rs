@@ -200,7 +200,10 @@ impl Source {
         let channels = lit.samples.photodiodes.into_iter().chain(lit.samples.forces);
         let columns: Vec<_> = channels.map(|channel| (channel.name, channel.values)).collect();
         let names = columns.iter().map(|(name, _)| name.clone()).collect();
-        let subject = vec![input.person().to_owned(); lit.samples.time_s.len()];
+        let mut subject = vec![input.person().to_owned(); lit.samples.time_s.len()];
+        for (first, [_, own, _]) in &lit.groups {
+            subject[*first..].fill(if own.is_empty() { input.person().to_owned() } else { own.clone() });
+        }
         let columns = columns.into_iter().collect();
         let mut source = Self { names, time_s: lit.samples.time_s, columns, subject, notes, warnings };
         source.without_faults(input, |take| {

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::log::formats::text::{self, Layout};
 use crate::log::lines::rows::{choose, dated};
 use crate::log::naming::columns::{Choice, Columns};
+use crate::log::naming::groups::GROUPS;
 use crate::log::naming::guess::role_of;
 use crate::log::naming::role::Role;
 use crate::log::{Format, Log, LogError};
@@ -21,9 +22,6 @@ pub struct LogHeader {
     /// Forces.
     pub forces: usize,
 }
-
-/// Columns that say where one recording ends and the next begins; only sets made of logs have them.
-pub(crate) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
 
 /// As much of a file of text as holds its header.
 const HEAD: u64 = 1 << 16;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::columns::{cell, cells, listed, missing, other_grid, photodiodes};
 use super::{DataError, Wanted};
 use crate::flexion;
-use crate::log::{Channel, GROUPS, LitRows, Statuses, Unknown, Verdict, doubts, lacks_label, time_not_read};
+use crate::log::{Channel, Groups, LitRows, Statuses, Unknown, Verdict, doubts, groups, lacks_label, time_not_read};
 use crate::table::{Cell, Table, TableError};
 use crate::words::decimal_comma;
 
@@ -30,7 +30,7 @@ pub(super) struct Source {
     /// Whether the LED went on and off, so that ambient light was taken away; none: another program did, or a camera's.
     pub(super) is_lit: Option<bool>,
     /// Session, subject and trajectory, and the first row that has them.
-    pub(super) groups: Vec<(usize, [String; 3])>,
+    pub(super) groups: Groups,
     /// How the ambient light of a raw log was taken away.
     pub(super) notes: Vec<String>,
     /// What whoever uses the rows should know.
@@ -124,7 +124,7 @@ impl Source {
     }
 
     fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
-        let LitRows { samples, notes, .. } = wanted.rows.log.lit_rows(path)?;
+        let LitRows { samples, groups, notes, .. } = wanted.rows.log.lit_rows(path)?;
         // A force in another unit is not read.
         let of_columns = notes.iter().filter(|note| note.starts_with("column "));
         let of_columns: String = of_columns.map(|note| format!("; {note}")).collect();
@@ -168,7 +168,7 @@ impl Source {
             invalid: vec![false; rows],
             faulty: vec![false; rows],
             is_lit: wanted.rows.log.led_of(path),
-            groups: Vec::new(),
+            groups,
             notes,
             warnings,
             time_s: samples.time_s,
@@ -287,41 +287,6 @@ fn bad_cell(table: &Table, row: usize, name: &str) -> Result<TableError, TableEr
         decimal_comma(&shown)
     );
     Ok(table.cell(row, name, what))
-}
-
-/// Session, subject and trajectory where they change, with the first row that has them.
-fn groups(table: &Table) -> Result<Vec<(usize, [String; 3])>, TableError> {
-    let mut changes: Vec<(usize, [String; 3])> = Vec::new();
-    for (k, group) in GROUPS.iter().enumerate().filter(|(_, group)| table.has(group)) {
-        let mut own: Vec<(usize, String)> = Vec::new();
-        table.each_text(group, |row, text| {
-            if own.last().is_none_or(|(_, last)| last != text) {
-                own.push((row, text.to_owned()));
-            }
-        })?;
-        changes = merged(&changes, k, own);
-    }
-    Ok(changes)
-}
-
-/// Changes of the groups before joined with those of group `k`.
-fn merged(before: &[(usize, [String; 3])], k: usize, own: Vec<(usize, String)>) -> Vec<(usize, [String; 3])> {
-    let mut rows: Vec<usize> = before.iter().map(|c| c.0).chain(own.iter().map(|c| c.0)).collect();
-    rows.sort_unstable();
-    rows.dedup();
-    let (mut last, mut own) = (before.iter().peekable(), own.into_iter().peekable());
-    let mut group: [String; 3] = Default::default();
-    let mut joined = Vec::with_capacity(rows.len());
-    for row in rows {
-        if let Some((_, known)) = last.next_if(|change| change.0 == row) {
-            group[..k].clone_from_slice(&known[..k]);
-        }
-        if let Some((_, text)) = own.next_if(|change| change.0 == row) {
-            group[k] = text;
-        }
-        joined.push((row, group.clone()));
-    }
-    joined
 }
 
 /// Leaves only the cells where files have other photodiodes than each other.
