@@ -101,7 +101,7 @@ fn labels_are_drawn_below_the_photodiodes() {
         ("labels-few", 60.0, 100, 90, 65.03),
     ] {
         let (posture, samples) = (posture(seconds, every, lost), samples(start_s, seconds + 15.0));
-        let labels = label(&posture, &samples, &clock(&posture, &samples), None);
+        let labels = label(&posture, &samples, &clock(&posture, &samples), None, 0.0);
         let picture = drawn(name, |png, svg| draw_labels(&samples, &labels, png, svg).unwrap());
         assert_eq!(picture.picture.dimensions(), (WIDTH, 90 + 8 * LANE_PX + 460));
         assert!(grey(&picture.picture) > 5000, "{name}");
@@ -124,7 +124,7 @@ fn sets_without_photodiodes_labels_or_rows_are_drawn() {
         },
         ..clock(&posture, &samples(65.0, 20.0))
     };
-    let labels = label(&posture, &all, &tie, None);
+    let labels = label(&posture, &all, &tie, None, 0.0);
     let picture = drawn("labels-epoch", |png, svg| draw_labels(&all, &labels, png, svg).unwrap());
     assert!(picture.svg.contains("time of the log less 1699999995, s"));
     let bare = Samples { photodiodes: Vec::new(), ..all.clone() };
@@ -134,6 +134,6 @@ fn sets_without_photodiodes_labels_or_rows_are_drawn() {
         Labels { angles_deg: vec![vec![f64::NAN; 500]; 3], unlabelled: vec![Some(Unlabelled::Gap); 500], ..labels };
     drawn("labels-none", |png, svg| draw_labels(&all, &none, png, svg).unwrap());
     let empty = samples(65.0, 0.0);
-    let labels = label(&posture, &empty, &tie, None);
+    let labels = label(&posture, &empty, &tie, None, 0.0);
     drawn("labels-empty", |png, svg| draw_labels(&empty, &labels, png, svg).unwrap());
 }

@@ -8,10 +8,11 @@
 //! gap: two seen frames further apart than the longest gap, be it that the marker was hidden or that the camera dropped
 //! frames. How it runs between frames, and how sure it is there, is [`curve`]'s. What the tie's error at that time
 //! changes the angle by is a share of the label's error, [`share`]'s; it is the same for neighbouring rows, so it does
-//! not average out. A label whose frames' errors are not known has none either.
+//! not average out. So is what the row's own stamp changes it by, where stamps lie off even steps ([`stamps`]). A label whose frames' errors are not known has none either.
 
 mod curve;
 mod share;
+pub(super) mod stamps;
 
 use std::borrow::Cow;
 
@@ -83,8 +84,15 @@ pub(super) struct Labels {
 }
 
 /// Labels each row. `max_gap_s`: seen frames further apart are not interpolated between; none: two frame intervals.
+/// `stamp_sd_s`: how far rows' times may be off, each by itself.
 #[must_use]
-pub(super) fn label(posture: &Posture, samples: &Samples, tie: &Tie, max_gap_s: Option<f64>) -> Labels {
+pub(super) fn label(
+    posture: &Posture,
+    samples: &Samples,
+    tie: &Tie,
+    max_gap_s: Option<f64>,
+    stamp_sd_s: f64,
+) -> Labels {
     let max_gap_s = max_gap_s.unwrap_or_else(|| MOST_INTERVALS * median_interval_s(&posture.time_s));
     // A video without frames never begins.
     let ends_s = [posture.time_s.first(), posture.time_s.last()].map(|t| t.copied().unwrap_or(f64::INFINITY));
@@ -97,7 +105,7 @@ pub(super) fn label(posture: &Posture, samples: &Samples, tie: &Tie, max_gap_s: 
     let (mut angles_deg, mut sds_deg, mut gaps) = (Vec::new(), Vec::new(), Vec::new());
     for (joint, name) in posture.joints.iter().enumerate() {
         let mut curve = Curve::new(&posture.time_s, &posture.angles_deg[joint], &posture.sds_deg[joint], max_gap_s);
-        let mut tie_share = TieShare::new(tie, &curve);
+        let mut tie_share = TieShare::new(tie, &curve, stamp_sd_s);
         let (mut angles, mut sds) = (vec![f64::NAN; video_s.len()], vec![f64::NAN; video_s.len()]);
         let first_gap = gaps.len();
         for row in inside.clone() {

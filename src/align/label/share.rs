@@ -1,4 +1,4 @@
-//! The tie's share of a label's error.
+//! The tie's share of a label's error, and the row's own stamp's.
 //!
 //! In: a joint's [`Curve`], the [`Tie`], and a label. Out: the expected square of what the tie's error changes the
 //! label by, that error being normal with standard deviation s. With rate r and second derivative a it is
@@ -22,6 +22,8 @@ const STEPS: [f64; 2] = [1.0, 0.6];
 #[derive(Debug)]
 pub(super) struct TieShare<'a> {
     tie: &'a Tie,
+    /// How far a row's own stamp may be off, seconds.
+    stamp_sd_s: f64,
     /// For each step the curve before and after the label: each is asked at times that ascend.
     around: [[Curve; 2]; 2],
     /// Mean square of the joint's second derivative.
@@ -31,14 +33,14 @@ pub(super) struct TieShare<'a> {
 }
 
 impl<'a> TieShare<'a> {
-    pub(super) fn new(tie: &'a Tie, curve: &Curve) -> Self {
+    pub(super) fn new(tie: &'a Tie, curve: &Curve, stamp_sd_s: f64) -> Self {
         let around = STEPS.map(|_| [curve.clone(), curve.clone()]);
-        Self { tie, around, bend2: curve.bend2(), range_deg: curve.range_deg() }
+        Self { tie, stamp_sd_s, around, bend2: curve.bend2(), range_deg: curve.range_deg() }
     }
 
     /// The share's square at a label.
     pub(super) fn deg2(&mut self, video_s: f64, label: &Between) -> f64 {
-        let sd_s = self.tie.timebase.sd_s(video_s) / (1.0 + self.tie.timebase.drift);
+        let sd_s = self.tie.timebase.sd_s(video_s).hypot(self.stamp_sd_s) / (1.0 + self.tie.timebase.drift);
         // A sure tie asks for no rate.
         if sd_s == 0.0 {
             return 0.0;

@@ -40,7 +40,7 @@ fn labels_agree_with_the_truth_and_end_with_the_video() {
     let times = frames(300, 30.0);
     let posture = Posture::of(times.clone(), vec![times.iter().map(|&t| bending(t)).collect()], 0.02);
     let samples = samples(rows(times[299]));
-    let labels = label(&posture, &samples, &tie(LINE), None);
+    let labels = label(&posture, &samples, &tie(LINE), None, 0.0);
     let mut worst = [0.0_f64; 2];
     for (row, &t) in samples.time_s.iter().enumerate() {
         let video_s = LINE.own_s(t);
@@ -74,7 +74,7 @@ fn rows_at_a_frame_get_its_angle() {
     // In seconds since 1970, where a float counts quarters of a microsecond.
     let line = Timebase { at_reference_s: 1.7e9, ..LINE };
     let samples = samples(times.iter().map(|&t| line.other_s(t)).collect());
-    let labels = label(&posture, &samples, &tie(line), None);
+    let labels = label(&posture, &samples, &tie(line), None, 0.0);
     assert_eq!((&labels.angles_deg[0], labels.counts().rows_labelled), (&angles, 50));
     assert!(labels.sds_deg[0].iter().all(|&sd| (sd - 0.02).abs() <= 1e-12));
 }
@@ -93,7 +93,7 @@ fn hidden_markers_leave_gaps_joint_by_joint() {
     lose(&mut angles[2], 0..10);
     let posture = Posture::of(times.clone(), angles, 0.02);
     let samples = samples(rows(times[299]));
-    let labels = label(&posture, &samples, &tie(LINE), None);
+    let labels = label(&posture, &samples, &tie(LINE), None, 0.0);
     let lost = |joint: usize, t: f64| -> bool {
         let holes: &[[usize; 2]] =
             [&[[59, 90], [119, 130]][..], &[[59, 90], [124, 140]], &[[59, 90], [119, 130]]][joint];
@@ -135,11 +135,11 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
         let mut times = all.clone();
         times.drain(40..40 + dropped);
         let dropped_rows =
-            label(&Posture::of(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None);
+            label(&Posture::of(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None, 0.0);
         let mut lost = angle(&all);
         (40..40 + dropped).for_each(|k| lost[0][k] = f64::NAN);
         let lost_rows =
-            label(&Posture::of(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), None);
+            label(&Posture::of(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), None, 0.0);
         assert_eq!(dropped_rows.gaps, lost_rows.gaps);
         assert_eq!(dropped_rows.unlabelled, lost_rows.unlabelled);
         assert_eq!(
@@ -148,7 +148,7 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
             "{dropped} lost: two frames are bridged, three are not"
         );
         let asked = |gap_s| {
-            label(&Posture::of(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), Some(gap_s))
+            label(&Posture::of(all.clone(), lost.clone(), 0.0), &samples(inside.clone()), &tie(still), Some(gap_s), 0.0)
         };
         assert!(asked((dropped + 1) as f64 / 30.0).gaps.is_empty());
         assert_eq!(asked((dropped + 1) as f64 / 30.0 - 0.001).gaps.len(), 1);
@@ -159,7 +159,8 @@ fn a_gap_is_a_time_whether_frames_were_lost_or_dropped() {
     let times: Vec<f64> = all.iter().map(|t| t + random.random_range(-0.2..0.2) / 30.0).collect();
     let mut times: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
     times.remove(50);
-    let labels = label(&Posture::of(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None);
+    let labels =
+        label(&Posture::of(times.clone(), angle(&times), 0.0), &samples(inside.clone()), &tie(still), None, 0.0);
     assert!(labels.gaps.is_empty(), "{:?}", labels.gaps);
     let counts = labels.counts();
     assert_eq!(counts.rows_labelled + counts.after_the_video, 280);
@@ -170,18 +171,18 @@ fn one_frame_no_frame_and_no_row() {
     let still = Timebase { drift: 0.0, ..LINE };
     let [before, at, after] = [-0.1, 0.0, 0.1].map(|t| still.other_s(t));
     let one = Posture::of(vec![0.0], vec![vec![12.0], vec![f64::NAN]], 0.1);
-    let labels = label(&one, &samples(vec![before, at, after]), &tie(still), None);
+    let labels = label(&one, &samples(vec![before, at, after]), &tie(still), None, 0.0);
     let status: Vec<_> = (0..3).map(|row| labels.status(row)).collect();
     assert_eq!(status, ["before the video", "gap: J2", "after the video"]);
     assert!(labels.angles_deg[0][1] == 12.0 && labels.sds_deg[0][1] == 0.1);
     assert_eq!(labels.gaps, [Gap { from_s: at, to_s: at, joints: vec!["J2".into()], rows: 1 }]);
     // The tie's error asks for a rate of change, and a frame alone has none.
     let unsure = Timebase { at_reference_sd_s: 1e-3, ..still };
-    let labels = label(&one, &samples(vec![at]), &tie(unsure), None);
+    let labels = label(&one, &samples(vec![at]), &tie(unsure), None, 0.0);
     assert!(labels.angles_deg[0][0] == 12.0 && labels.sds_deg[0][0].is_nan());
-    let none = label(&Posture::of(Vec::new(), vec![Vec::new()], 0.1), &samples(vec![at]), &tie(still), None);
+    let none = label(&Posture::of(Vec::new(), vec![Vec::new()], 0.1), &samples(vec![at]), &tie(still), None, 0.0);
     assert!(none.status(0) == "before the video" && none.gaps.is_empty());
-    let empty = label(&one, &samples(Vec::new()), &tie(still), None);
+    let empty = label(&one, &samples(Vec::new()), &tie(still), None, 0.0);
     assert_eq!(empty.counts(), LabelCounts::default());
 }
 
@@ -192,7 +193,7 @@ fn what_is_not_known_of_a_frame_is_not_known_of_its_rows() {
     posture.sds_deg[0][30] = f64::NAN;
     let still = Timebase { reference_s: 0.0, at_reference_s: 0.0, drift: 0.0, ..LINE };
     let rows: Vec<f64> = (0..190).map(|k| 0.01 * f64::from(k) + 0.003).collect();
-    let labels = label(&posture, &samples(rows.clone()), &tie(still), None);
+    let labels = label(&posture, &samples(rows.clone()), &tie(still), None, 0.0);
     assert!(labels.angles_deg[0].iter().all(|a| a.is_finite()));
     for (row, &t) in rows.iter().enumerate() {
         // The frame is one of four, or the one more that gives the error.
@@ -203,7 +204,7 @@ fn what_is_not_known_of_a_frame_is_not_known_of_its_rows() {
         }
     }
     let unknown = Timebase { at_reference_sd_s: f64::NAN, ..still };
-    let labels = label(&posture, &samples(rows), &tie(unknown), None);
+    let labels = label(&posture, &samples(rows), &tie(unknown), None, 0.0);
     assert!(labels.sds_deg[0].iter().all(|sd| sd.is_nan()) && labels.counts().rows_labelled == 190);
 }
 
@@ -227,7 +228,7 @@ fn shares(rate_hz: f64, noise: f64, tie_sd_s: f64, lost_every: usize, seed: u64)
             drift_sd: 0.3 * tie_sd_s,
         };
         let log = samples((0..60).map(|k| LINE.other_s(times[5] + f64::from(k) * 0.013_7)).collect());
-        let labels = label(&Posture::of(times, vec![angles], noise), &log, &tie(found), None);
+        let labels = label(&Posture::of(times, vec![angles], noise), &log, &tie(found), None, 0.0);
         for (row, &t) in log.time_s.iter().enumerate() {
             let ratio = (labels.angles_deg[0][row] - truth(LINE.own_s(t))).abs() / labels.sds_deg[0][row];
             if !ratio.is_nan() {
@@ -271,7 +272,7 @@ fn off_by(hz: f64, tie_sd_s: f64, wrong: f64) -> [f64; 2] {
     let found =
         Timebase { at_reference_s: LINE.at_reference_s + wrong * tie_sd_s, at_reference_sd_s: tie_sd_s, ..LINE };
     let log = samples(rows(times[899]));
-    let labels = label(&posture, &log, &tie(found), None);
+    let labels = label(&posture, &log, &tie(found), None, 0.0);
     let rows = labels.angles_deg[0].iter().zip(&labels.sds_deg[0]).zip(&log.time_s);
     let ratios: Vec<f64> =
         rows.map(|((angle, sd), &t)| (angle - truth(LINE.own_s(t))) / sd).filter(|ratio| !ratio.is_nan()).collect();
@@ -295,4 +296,21 @@ fn a_joint_that_turns_round_is_not_surer_for_it() {
         let [typical, largest] = off_by(1.0, tie_sd_s, 1.0);
         assert!(typical <= 1.6 && largest <= 5.0, "{tie_sd_s}: {typical} {largest}");
     }
+}
+
+#[test]
+fn stamps_off_even_steps_count_in_the_labels_errors() {
+    // A row is sampled every 10 ms and stamped up to 8 ms early or late; without its share the errors are 40 times it.
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let times = frames(900, 30.0);
+    let posture = Posture::of(times.clone(), vec![times.iter().map(|&t| bending(0.5 * t)).collect()], 0.02);
+    let sampled = rows(times[899]);
+    let log = samples(sampled.iter().map(|t| t + random.random_range(-0.008..0.008)).collect());
+    let scatter_s = stamps::scatter_s(&log.time_s);
+    let labels = label(&posture, &log, &tie(LINE), None, scatter_s);
+    let rows = sampled.iter().zip(&labels.angles_deg[0]).zip(&labels.sds_deg[0]);
+    let ratios = rows.map(|((&t, angle), sd)| (angle - bending(0.5 * LINE.own_s(t))) / sd);
+    let squares: Vec<f64> = ratios.filter(|ratio| !ratio.is_nan()).map(|ratio| ratio * ratio).collect();
+    let typical = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!(squares.len() > 2900 && (0.8..=1.2).contains(&typical), "{typical} of {}", squares.len());
 }

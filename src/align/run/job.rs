@@ -5,6 +5,7 @@ use crate::align::certificate::Certificate;
 use crate::align::error::AlignError;
 use crate::align::export::BidsNames;
 use crate::align::label::label;
+use crate::align::label::stamps::scatter_s;
 use crate::align::options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
 use crate::align::posture::Posture;
 use crate::align::run::plan::{Foreknown, steps};
@@ -15,6 +16,9 @@ use crate::job::{Report, Watch};
 use crate::log::{Log, Samples, samples};
 use crate::stages::{Stages, left_out};
 use crate::table::TableFormat;
+
+/// Scatter of stamps from which on it is noted: beyond what a log of milliseconds rounds, 0.3 ms.
+const NOTED_S: f64 = 1e-3;
 
 /// Runs the job; every result is in its place when it returns.
 ///
@@ -49,7 +53,9 @@ pub fn run(
         .time("tie", || tie(&posture, &log, &samples, options))
         .map_err(|why| AlignError::NotTied { path: inputs.joints.clone(), why: doubted(why) })?;
     watch.go_on()?;
-    let labels = stages.time("label", || label(&posture, &samples, &tie, options.max_gap_s));
+    // Rows in which the LED is on may come in blocks.
+    let stamp_sd_s = scatter_s(&log.time_s).min(scatter_s(&samples.time_s));
+    let labels = stages.time("label", || label(&posture, &samples, &tie, options.max_gap_s, stamp_sd_s));
     if labels.angles_deg.iter().flatten().all(|angle| angle.is_nan()) {
         let why = doubted(nothing_labelled(&posture, &samples, &tie));
         return Err(AlignError::NothingLabelled { path: inputs.log.clone(), why });
@@ -60,7 +66,14 @@ pub fn run(
     };
     watch.go_on()?;
     let warnings = [&posture.warnings[..], &tie.warnings, &agreement.warnings, &samples.warnings].concat();
-    let notes = [&log.notes[..], &samples.notes, &tie.notes, &agreement.notes].concat();
+    let scatter = (stamp_sd_s > NOTED_S).then(|| {
+        format!(
+            "the log's time stamps lie {:.1} ms off even steps (SD), and labels' standard errors count that as late \
+             stamps; how late all of them are isn't seen",
+            1e3 * stamp_sd_s
+        )
+    });
+    let notes = [&log.notes[..], &samples.notes, &tie.notes, &agreement.notes, scatter.as_slice()].concat();
     let certificate = Certificate::new(&tie, &labels, [&warnings[..], &notes].concat());
     stages.time("write", || results.training(&samples, &posture, &labels, &certificate, options, outputs))?;
     let exported = stages.time("export", || results.exports(&posture, &tie, names.as_ref(), inputs, outputs))?;

@@ -83,7 +83,7 @@ impl Job for AlignJob {
             Part::pictures("training-labels.png"),
         ],
     )
-    .revision(10);
+    .revision(11);
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         match role {
