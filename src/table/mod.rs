@@ -9,6 +9,7 @@
 //! A writer writes to the given path; [`crate::files`] sees to it that results appear whole or not at all.
 
 mod cells;
+mod copies;
 mod csv;
 mod parquet;
 mod plausible;
@@ -21,6 +22,7 @@ use rayon::prelude::*;
 use crate::words::{Words, fixed};
 
 pub(crate) use cells::{DELIMITERS, delimiter_of, line_of_row};
+pub(crate) use copies::copies;
 pub use read::{Cell, Table, column_names};
 
 /// Why a table can't be written or read.

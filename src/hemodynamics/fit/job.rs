@@ -14,11 +14,10 @@ use super::results::{estimates, figure};
 use super::{FitInputs, FitOptions, alone, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
-use crate::input::copies;
 use crate::job::{Outputs, Report, Watch};
 use crate::log::{ambient_step_of, doubts::alternating};
 use crate::stages::{Stages, Step, left_out};
-use crate::table::{Column, TableWriter, Value};
+use crate::table::{Column, TableWriter, Value, copies};
 use crate::words::in_order;
 
 /// The stage that fits parts of the recordings.
@@ -274,7 +273,8 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], of_parts: Vec<Stri
     }
     warnings.extend(signs::of_scalings(result, recordings));
     warnings.extend(recordings.iter().zip(&result.delays).filter_map(|(read, delay)| delayed((*delay)?, &read.name)));
-    warnings.extend(copies(recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()))));
+    let files = recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()));
+    warnings.extend(copies(files.collect()));
     for read in recordings {
         warnings.extend(read.warnings.iter().map(|warning| format!("{}: {warning}", read.name)));
         let traces = read.photodiodes.iter().zip(&read.recording.photodiodes);

@@ -14,13 +14,13 @@ use super::report::{SkillFigures, SkillReport, TrialFigures};
 use super::summary;
 use super::table::{self, TABLE};
 use crate::files::{Places, json_text};
-use crate::input::copies;
 use crate::job::{Outputs, Report, Watch};
 use crate::live::error::LiveError;
 use crate::log::doubts;
 use crate::median::{SD_OF_MAD, median_of};
 use crate::predictor::DataFile;
 use crate::stages::{Stages, Step, left_out};
+use crate::table::copies;
 use crate::words::twins;
 
 pub(super) const FIGURES: &str = "skill.json";
@@ -277,7 +277,8 @@ fn distinct(done: &[(&DataFile, Done)]) -> Result<(), LiveError> {
 /// Notes and warnings on all recordings.
 fn said(done: &[(&DataFile, Done)], reference: Option<&Reference>) -> (Vec<String>, Vec<String>) {
     let mut notes: Vec<String> = done.iter().flat_map(|(_, one)| one.notes.iter().cloned()).collect();
-    let mut warnings = copies(done.iter().map(|(recording, _)| (recording.name.clone(), recording.path.as_path())));
+    let files = done.iter().map(|(recording, _)| (recording.name.clone(), recording.path.as_path()));
+    let mut warnings = copies(files.collect());
     warnings.extend(done.iter().flat_map(|(_, one)| one.warnings.iter().cloned()));
     if done.iter().any(|(_, one)| one.gated) {
         notes.push(

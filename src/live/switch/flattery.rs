@@ -6,10 +6,10 @@ use lunula_predictor::Predictor;
 
 use super::options::ContactOptions;
 use super::traces::SwitchInputs;
-use crate::input::copies;
 use crate::live::error::LiveError;
 use crate::log::{AmbientRule, Columns, LogReading};
 use crate::predictor::{DataFile, RowOptions, Wanted, again, open_models, read_files};
+use crate::table::copies;
 
 /// The target of a model of contact itself.
 const CONTACT: &str = "contact";
@@ -17,7 +17,7 @@ const CONTACT: &str = "contact";
 /// What to say of them.
 pub(super) fn flattery(inputs: &SwitchInputs, options: &ContactOptions) -> Result<Vec<String>, LiveError> {
     let SwitchInputs { recordings, models } = inputs;
-    let mut said = copies(recordings.iter().map(|one| (one.name.clone(), one.path.as_path())));
+    let mut said = copies(recordings.iter().map(|one| (one.name.clone(), one.path.as_path())).collect());
     for model in open_models(models)?.predictors {
         let seen: Vec<&str> =
             recordings.iter().filter(|one| is_seen(one, &model, options)).map(|one| one.name.as_str()).collect();
