@@ -3,7 +3,7 @@
 //! `sub-<subject>/[ses-<session>/]motion/` gets `_motion.tsv` (no line of names, `n/a` where there is no angle),
 //! `_channels.tsv` and `_motion.json`. Channels: `LATENCY`, each frame's time from the first frame, seconds; as `MISC`
 //! the same on the log's clock; for each joint `JNTANG`, degrees, positive in flexion, and, where the table has it, its
-//! standard error as `MISC`. Another recording of the names stands: it is not replaced, a run of its own is needed. In a new
+//! standard error as `MISC`. Another recording of these names is not replaced: it takes a number of its own. In a new
 //! folder `dataset_description.json`, `README` and `participants.tsv` are written too. In a dataset that stands they
 //! are left as they are, but for a participant who is new: a row is added.
 
@@ -29,8 +29,8 @@ pub(crate) struct BidsNames {
 }
 
 impl BidsNames {
-    /// Checks the names: letters and digits of ASCII; a subject is needed. `run` is the recording's number among several
-    /// of these names.
+    /// Checks the names: letters and digits of ASCII; a subject is needed. `run` is the recording's number among those
+    /// of the same names.
     pub(crate) fn new(
         subject: Option<&str>,
         session: Option<&str>,
@@ -73,8 +73,8 @@ impl BidsNames {
 /// Writes the angles into the dataset that stands, or is to stand, in the folder `root`; returns the files' places.
 ///
 /// # Errors
-/// Fewer than two frames, which have no sampling frequency; another recording of these names; a `participants.tsv` without `participant_id`; a file that
-/// can't be written.
+/// Fewer than two frames, which have no sampling frequency; another recording of these names; a `participants.tsv`
+/// without `participant_id`; a file that can't be written.
 pub(crate) fn bids(
     places: &mut Places,
     root: &Path,
@@ -224,9 +224,9 @@ const README: &str = "Joint angles of a finger, measured in videos of coloured m
     \n\
     Each row of a *_motion.tsv is a frame of the video. The channel `time` is the frame's time from the first one, \
     `log_time` that \n\
-    on the clock of the log that was recorded along with the video (photodiodes, forces), in seconds. Angles are in degrees, positive in flexion; n/a \
-    where a marker \n\
-    was not seen. Nothing is interpolated.\n";
+    on the clock of the log that was recorded along with the video (photodiodes, forces), in seconds. Angles are in \
+    degrees, \n\
+    positive in flexion; n/a where a marker was not seen. Nothing is interpolated.\n";
 
 /// `participants.tsv` with this subject; none where it stands so.
 fn participants(path: &Path, subject: &str) -> Result<Option<String>, ExportError> {

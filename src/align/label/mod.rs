@@ -8,7 +8,8 @@
 //! gap: two seen frames further apart than the longest gap, be it that the marker was hidden or that the camera dropped
 //! frames. How it runs between frames, and how sure it is there, is [`curve`]'s. What the tie's error at that time
 //! changes the angle by is a share of the label's error, [`share`]'s; it is the same for neighbouring rows, so it does
-//! not average out. So is what the row's own stamp changes it by, where stamps lie off even steps ([`stamps`]). A label whose frames' errors are not known has none either.
+//! not average out. So is what the row's own stamp changes it by, where stamps lie off even steps ([`stamps`]). A label
+//! whose frames' errors are not known has none either.
 
 mod curve;
 mod share;

@@ -12,10 +12,10 @@ const CLAIM: &str = "The thesis isolates the green component because \u{201c}the
     the same places of the nail in all three channels. White is the lightest quarter of the nail's bed, red the \
     darkest. For each subject they are chosen on the mean picture of the other subjects, in which every channel has \
     one vote; so neither a subject's noise nor one channel can make its own contrast. Intervals are 95 % confidence \
-    intervals of the mean over subjects (Student's t), each for itself. Relative contrast is \
-    that of light (sRGB's curve undone) divided by the mean light of both zones. Shade and lunula are light and dark in \
-    every channel: where relative contrast is the same in all three, that is all the zones show. A camera's own tone curve makes it \
-    differ: photographs have to be sRGB without one, or linear.";
+    intervals of the mean over subjects (Student's t), each for itself. Relative contrast is that of light (sRGB's \
+    curve undone) divided by the mean light of both zones. Shade and lunula are light and dark in every channel: where \
+    relative contrast is the same in all three, that is all the zones show. A camera's own tone curve makes it differ: \
+    photographs have to be sRGB without one, or linear.";
 
 /// The columns of the table of channels, and of that of their differences.
 const COLUMNS: [TextColumn<ChannelRow>; 10] = [
