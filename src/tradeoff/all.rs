@@ -110,16 +110,16 @@ impl Plan {
         let begun = Instant::now();
         let folder = tempfile::tempdir()?;
         let folder = folder.path();
-        let (measured, maps) = match job {
-            Job::Photos => (photos::measure(&self.photos(folder)?)?, Vec::new()),
-            Job::Posture => (posture::measure(&self.posture(folder)?)?, Vec::new()),
-            Job::Align => (align::measure(&self.align(folder)?)?, Vec::new()),
-            Job::Predictor => (predictor::measure(&self.predictor(folder)?)?, Vec::new()),
-            Job::Switch => (switch::measure(&self.switch(folder)?)?, Vec::new()),
-            Job::Hemodynamics => (hemodynamics::measure(&self.effort)?, hemodynamics::stability()?),
+        let measured = match job {
+            Job::Photos => photos::measure(&self.photos(folder)?)?,
+            Job::Posture => posture::measure(&self.posture(folder)?)?,
+            Job::Align => align::measure(&self.align(folder)?)?,
+            Job::Predictor => predictor::measure(&self.predictor(folder)?)?,
+            Job::Switch => switch::measure(&self.switch(folder)?)?,
+            Job::Hemodynamics => hemodynamics::measure(&self.effort)?,
         };
         let others: Vec<&PeerRow> = others.iter().filter(|row| row.stage == job).collect();
-        Ok(Tradeoff { maps, ..judge(job.name(), measured, (&self.scene(job), &others), begun)? })
+        judge(job.name(), measured, (&self.scene(job), &others), begun)
     }
 }
 

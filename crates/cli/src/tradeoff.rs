@@ -68,8 +68,7 @@ enum Job {
     /// On synthetic recordings of its own (two spirals to train on, random movement to tell the error on), or on
     /// --input (a folder of recordings to train on) with --truth (a folder of recordings to tell the error on).
     Predictor(Measured),
-    /// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv,
-    /// .png, .svg)
+    /// Step responses of the hemodynamic model for every tolerance, order and mode
     ///
     /// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its
     /// tightest tolerance.

@@ -23,8 +23,8 @@ mod state;
 mod transient;
 
 pub use equilibrium::{
-    CurvePoint, Eigenvalue, Equilibrium, EquilibriumFault, Fate, LoadCurve, LoadPath, LoadRange, MapFault, MapPlan,
-    MapRow, Stability, Turn, TurnKind, equilibria, load_curve, rest, stability_row,
+    CurvePoint, Eigenvalue, Equilibrium, EquilibriumFault, LoadCurve, LoadPath, LoadRange, Stability, Turn, TurnKind,
+    equilibria, load_curve, rest,
 };
 pub use fit::{
     Bound, Bounds, Calibrated, Calibration, Combination, Course, Delay, Estimate, FitFault, FitOptions, FitResult,

@@ -1,4 +1,4 @@
-//! Pictures of the hemodynamic model: responses over time, static curves, fits, stability maps.
+//! Pictures of the hemodynamic model: responses over time, static curves, fits.
 
 mod over_time;
 

@@ -1,17 +1,14 @@
-//! The hemodynamic model over its solvers' settings: error against run time on step responses, and stability maps.
+//! The hemodynamic model over its solvers' settings: error against run time on step responses.
 //!
 //! Twenty responses of 4 s with 400 outputs each: steps of 0.1 to 1.0 N/cm2, released at 2 s, proximal and distal (Fig.
 //! 76, 77). The error is the largest `|x - x_ref| / D` of any wall at any output; the reference is the full model by
 //! the method of order 13 at its tightest tolerance, which tests of the crate tie to trajectories of 60 digits.
 
 mod bench;
-mod maps;
 mod modes;
 
 pub(super) use bench::AUTO;
 pub use bench::Bench;
-pub(super) use maps::write as write_maps;
-pub use maps::{Map, stability};
 pub use modes::measure;
 pub(super) use modes::solving_default;
 

@@ -67,9 +67,6 @@ pub struct Tradeoff {
     pub peers: Vec<PeerReport>,
     /// Seconds that measuring took.
     pub wall_s: f64,
-    /// Hemodynamics' maps of what becomes of a finger under a load.
-    #[serde(skip)]
-    pub maps: Vec<super::hemodynamics::Map>,
 }
 
 /// Finds the knees of what `measured` gave for `job` on `scene`, with the rows of other programs beside it. `begun`:
@@ -100,7 +97,7 @@ pub fn judge(
     let not_drawn: Vec<String> = curves.iter().filter(bare).map(not_drawn).collect();
     ensure!(not_drawn.len() < curves.len(), "{}", not_drawn.join("; "));
     refused.extend(not_drawn);
-    Ok(Tradeoff { job, rows, curves, refused, peers, wall_s: begun.elapsed().as_secs_f64(), maps: Vec::new() })
+    Ok(Tradeoff { job, rows, curves, refused, peers, wall_s: begun.elapsed().as_secs_f64() })
 }
 
 pub(in crate::tradeoff) fn is_on(row: &Row, curve: &Verdict) -> bool {

@@ -28,7 +28,7 @@ pub struct Setting {
 }
 
 impl Tradeoff {
-    /// Writes `tradeoff.csv`, `tradeoff.png` and `tradeoff.svg`, for hemodynamics `stability.*` as well.
+    /// Writes `tradeoff.csv`, `tradeoff.png` and `tradeoff.svg`.
     ///
     /// # Errors
     /// Where a file can't be written, or there is nothing to draw.
@@ -40,18 +40,16 @@ impl Tradeoff {
         Ok(())
     }
 
-    /// Its pictures: the curves as `name`, and maps.
+    /// Its picture: the curves as `name`.
     fn draw(&self, name: &str, staging: &Staging) -> anyhow::Result<()> {
         let [png, svg] = ["png", "svg"].map(|ending| staging.place(&format!("{name}.{ending}")));
         let solvers = self.job == hemodynamics::SOLVING.0;
         let panels = if solvers { solver_panels(self) } else { panels(self) };
-        draw_log_log(&panels, panels.len().min(2), PANEL_PX.0, &png?, &svg?)?;
-        if self.maps.is_empty() { Ok(()) } else { hemodynamics::write_maps(&self.maps, staging) }
+        draw_log_log(&panels, panels.len().min(2), PANEL_PX.0, &png?, &svg?)
     }
 }
 
-/// Writes all jobs' curves: `index.html`, `tradeoff.csv`, `<job>.png` and `.svg`, `stability.*`. `failed`: jobs without
-/// curves, and why.
+/// Writes all jobs' curves: `index.html`, `tradeoff.csv`, `<job>.png` and `.svg`. `failed`: jobs without curves, and why.
 ///
 /// # Errors
 /// Where a file can't be written.
@@ -95,10 +93,6 @@ pub fn index(done: &[Tradeoff], failed: &[(&str, String)], setting: &Setting, ou
         page.table(&header, &job.rows.iter().map(line).collect::<Vec<_>>(), |at| {
             job.rows[at].knee || job.rows[at].default
         });
-        if !job.maps.is_empty() {
-            page.paragraph("What becomes of a finger under a load:");
-            page.png(&read("stability.png".to_owned())?, "maps of load against parameter");
-        }
     }
     let wall_s: f64 = done.iter().map(|job| job.wall_s).sum();
     page.paragraph(&format!("lunula {}; measuring took {wall_s:.0} s.", env!("CARGO_PKG_VERSION")));

@@ -12,7 +12,6 @@
 
 mod curve;
 mod eigenvalues;
-mod map;
 mod network;
 mod polish;
 mod root;
@@ -20,7 +19,6 @@ mod search;
 
 pub use curve::{CurvePoint, LoadCurve, LoadPath, LoadRange, Turn, TurnKind, load_curve};
 pub use eigenvalues::Eigenvalue;
-pub use map::{Fate, MapFault, MapPlan, MapRow, stability_row};
 
 use crate::load::Inputs;
 use crate::model::{Arrow, Model, Pressures};
