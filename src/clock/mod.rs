@@ -20,7 +20,7 @@ pub use beside::Misfit;
 pub use format::{Cell, ClockFormat, Half, Unit};
 #[doc(hidden)]
 pub use glyph::training;
-pub use glyph::{InkBox, Levels, Patch, SURE, Scores, read_crop, recognise};
+pub use glyph::{InkBox, Levels, Patch, SURE, Scores, recognise};
 pub use read::ClockReader;
 pub use reading::{Doubt, ReaderEffort, Reading};
 pub use sequence::{ClockFault, ClockFit, FEWEST, MOST_DRIFT, ScreenDelay, USUAL_DRIFT, USUAL_SCREEN_S, fit};

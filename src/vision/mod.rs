@@ -9,7 +9,6 @@
 
 mod board;
 mod cells;
-mod extreme;
 mod image;
 mod lens;
 mod masks;
@@ -29,7 +28,6 @@ use thiserror::Error;
 
 pub(crate) use board::{Corners, Sought, find_board, shows_another};
 pub(crate) use cells::{Cell, blurred, matched, reduced, smoothed};
-pub(crate) use extreme::{Extreme, extreme};
 pub(crate) use image::{closed_line, part_resized, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]

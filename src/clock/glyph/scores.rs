@@ -24,14 +24,6 @@ impl Scores {
         Self { digits: std::array::from_fn(|k| shares[k] / sum), other: shares[10] / sum }
     }
 
-    /// The same where anything but a whole digit is rarer than in training (28 of 100 there), by this factor.
-    #[must_use]
-    pub fn with_other_rarer(&self, factor: f64) -> Self {
-        let other = factor * self.other;
-        let sum = other + self.digits.iter().sum::<f64>();
-        Self { digits: self.digits.map(|p| p / sum), other: other / sum }
-    }
-
     /// The likeliest digit and how probable it is, sure or not.
     #[must_use]
     pub fn likeliest(&self) -> (u8, f64) {
@@ -60,8 +52,5 @@ mod tests {
         assert!(matches!(scores.likeliest(), (7, probability) if probability >= SURE));
         answers[10] = 7.0;
         assert!(matches!(Scores::of(answers).likeliest(), (7, probability) if probability < SURE && probability > 0.7));
-        let (digit, probability) = Scores::of(answers).with_other_rarer(0.1).likeliest();
-        assert!(digit == 7 && probability >= SURE);
-        assert!((probability - 1.0 / (1.0 + 0.1 * (-1f64).exp() + 9.0 * (-8f64).exp())).abs() <= 1e-6);
     }
 }
