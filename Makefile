@@ -15,7 +15,7 @@ help:
 	@echo "make test   build and run every test; those of real recordings where LUNULA_REAL_DATA or ../shared/data has them"
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
 	@echo "make msrv   compile with the oldest Rust that Cargo.toml promises"
-	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn, against diffsol"
+	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas"
 	@echo "make peers  other programs on the scenes of \`lunula tradeoff\`, for its --peers: bench/runs/DATE-MACHINE/peers.csv"
 	@echo "make fuzz   look for inputs that make a parser panic, abort or hang: FUZZ_SECONDS=60 each, PARSERS=\"csv xdf\" for some"
 
@@ -122,7 +122,6 @@ bench: system
 	cargo bench --locked -p lunula-cli --bench live
 	cargo bench --locked -p lunula-predictor
 	cargo bench --locked -p lunula-hemodynamics
-	cargo bench --locked -p lunula-hemodynamics-peer
 	cargo test --locked --release -p lunula-hemodynamics-peer
 
 # The packages of bench/peers/requirements.txt that python3 lacks are named, and what needs them is left out.

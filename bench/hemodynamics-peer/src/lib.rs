@@ -1,4 +1,4 @@
-//! diffsol's BDF on the equations of `lunula-hemodynamics`, for its bench and for a test that both agree.
+//! diffsol's BDF on the equations of `lunula-hemodynamics`, for `bench/peers` and for a test that both agree.
 //!
 //! A package of its own, and none of the workspace's default members: diffsol brings matrices that take minutes to
 //! compile.
