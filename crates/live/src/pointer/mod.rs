@@ -25,7 +25,7 @@ mod tests;
 #[cfg(test)]
 mod user;
 
-pub use config::{Click, Config, ConfigFault, ConfigFaults, Mode};
+pub use config::{Click, Config, ConfigFault, Mode};
 pub use decide::Pointer;
 pub use event::{Button, Event, Reason, What};
 #[cfg(target_os = "linux")]

@@ -1,8 +1,7 @@
-//! Whether the values of `mouse.toml` can work together.
+//! The text of `mouse.toml` to a [`Config`], and whether its values can work together.
 
 use std::ops::RangeInclusive;
 
-use super::file::{ConfigFault, ConfigFaults};
 use super::{Click, Config, Mode};
 
 /// The longest time of any key, s, and of what a person waits for at every touch: longer ones, of which many are
@@ -18,29 +17,42 @@ const GREATEST_N: f64 = 20.0;
 /// The greatest speed, px/s, and the greatest gain: moves of one sample stay far within 32 bits.
 const FASTEST: f64 = 1e6;
 
+/// All that is wrong with a `mouse.toml`, by its keys.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .0.join("\n"))]
+pub struct ConfigFault(pub Vec<String>);
+
 impl Config {
+    /// Reads a file's text.
+    ///
+    /// # Errors
+    /// Text that is no TOML, has unknown keys or values of another type, with its line; values that can't be.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigFault> {
+        let config: Self = toml::from_str(text).map_err(|why| ConfigFault(vec![why.to_string()]))?;
+        config.check()?;
+        Ok(config)
+    }
+
     /// Can it work?
     ///
     /// # Errors
     /// All that is wrong, by key.
-    pub fn check(&self) -> Result<(), ConfigFaults> {
+    pub fn check(&self) -> Result<(), ConfigFault> {
         let faults: Vec<_> = self.ranges().into_iter().flatten().chain(self.orders().into_iter().flatten()).collect();
-        if faults.is_empty() { Ok(()) } else { Err(ConfigFaults(faults)) }
+        if faults.is_empty() { Ok(()) } else { Err(ConfigFault(faults)) }
     }
 
     /// Values that are impossible by themselves.
-    fn ranges(&self) -> Vec<Option<ConfigFault>> {
+    fn ranges(&self) -> Vec<Option<String>> {
         let above = |key: &'static str, value: f64, most: f64, unit: &str| {
             (!(value > 0.0 && value <= most))
-                .then(|| ConfigFault::of(key, format!("{key} = {value}: choose above 0 and up to {most} {unit}")))
+                .then(|| format!("{key} = {value}: choose above 0 and up to {most} {unit}"))
         };
         let from_zero = |key: &'static str, value: f64, most: f64, unit: &str| {
-            (!(0.0..=most).contains(&value))
-                .then(|| ConfigFault::of(key, format!("{key} = {value}: choose 0 to {most} {unit}")))
+            (!(0.0..=most).contains(&value)).then(|| format!("{key} = {value}: choose 0 to {most} {unit}"))
         };
         let angle = |key: &'static str, value: f64| {
-            (!(-180.0..=180.0).contains(&value))
-                .then(|| ConfigFault::of(key, format!("{key} = {value}: choose -180 to 180 degrees")))
+            (!(-180.0..=180.0).contains(&value)).then(|| format!("{key} = {value}: choose -180 to 180 degrees"))
         };
         vec![
             angle("turn_deg", self.turn_deg),
@@ -62,8 +74,7 @@ impl Config {
             from_zero("settle_s", self.settle_s, LONGEST_WAIT_S, "s"),
             (self.take_back_s != 0.0 && !TAKE_BACK_S.contains(&self.take_back_s)).then(|| {
                 let (least, most) = (TAKE_BACK_S.start(), TAKE_BACK_S.end());
-                let what = format!("take_back_s = {}: choose 0, or {least} to {most} s", self.take_back_s);
-                ConfigFault::of("take_back_s", what)
+                format!("take_back_s = {}: choose 0, or {least} to {most} s", self.take_back_s)
             }),
             above("drag_after_s", self.drag_after_s, LONGEST_S, "s"),
             above("tap_max_s", self.tap_max_s, LONGEST_WAIT_S, "s"),
@@ -80,43 +91,37 @@ impl Config {
     }
 
     /// Values that are impossible together. Comparisons with what is not a number are false: `ranges` reports it.
-    fn orders(&self) -> Vec<Option<ConfigFault>> {
+    fn orders(&self) -> Vec<Option<String>> {
         let Self { touch_n, touch_release_n, click_n, release_n, .. } = *self;
         let press = self.click == Click::Press;
         vec![
             (touch_release_n > touch_n).then(|| {
-                let what = format!(
+                format!(
                     "touch_release_n = {touch_release_n} is above touch_n = {touch_n}: a touch would end as soon as it \
                      begins"
-                );
-                ConfigFault::of("touch_release_n", what)
+                )
             }),
             (press && release_n >= click_n).then(|| {
-                let what = format!(
+                format!(
                     "release_n = {release_n} must be below click_n = {click_n}, or noise would press and release the \
                      button again and again"
-                );
-                ConfigFault::of("release_n", what)
+                )
             }),
             (press && release_n < touch_n).then(|| {
-                let what = format!(
+                format!(
                     "release_n = {release_n} must be at least touch_n = {touch_n}, or the finger has to lift to let \
                      the button go"
-                );
-                ConfigFault::of("release_n", what)
+                )
             }),
             (press && click_n <= touch_n).then(|| {
-                let what =
-                    format!("click_n = {click_n} must be above touch_n = {touch_n}: between the two the pointer moves");
-                ConfigFault::of("click_n", what)
+                format!("click_n = {click_n} must be above touch_n = {touch_n}: between the two the pointer moves")
             }),
             (self.mode == Mode::Velocity && self.gain_high_px_per_s_per_n < self.gain_low_px_per_s_per_n).then(|| {
-                let what = format!(
+                format!(
                     "gain_high_px_per_s_per_n = {} is below gain_low_px_per_s_per_n = {}: the pointer has to be finer \
                      near rest",
                     self.gain_high_px_per_s_per_n, self.gain_low_px_per_s_per_n
-                );
-                ConfigFault::of("gain_high_px_per_s_per_n", what)
+                )
             }),
         ]
     }

@@ -5,13 +5,12 @@
 //! unless a key says otherwise.
 
 mod check;
-mod file;
 #[cfg(test)]
 mod tests;
 
 use serde::{Deserialize, Serialize};
 
-pub use file::{ConfigFault, ConfigFaults};
+pub use check::ConfigFault;
 
 /// What shear controls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -29,23 +29,20 @@ fn keys_are_read() {
 }
 
 #[test]
-fn all_faults_of_a_file_are_reported_with_their_lines() {
-    let text = "clik_n = 2.0\n\nmode = \"speed\"\nrelease_n = 1.9\ntouch_n = \"light\"\ncap_px_per_s = nan\n\
-                velocity = 3\n[zero]\nafter_s = 1\n";
-    let got = faults(text);
-    let expected = [
-        "line 1: unknown key `clik_n`; did you mean `click_n`?",
-        "line 3: `mode`: unknown variant `speed`, expected `velocity` or `position`",
-        "line 4: release_n = 1.9 must be below click_n = 1.8",
-        "line 5: `touch_n`: invalid type: string \"light\", expected f64",
-        "line 6: cap_px_per_s = NaN: choose above 0 and up to 1000000 px/s",
-        "line 7: unknown key `velocity`; known: beta, cap_px_per_s, click,",
-        "line 8: `zero`: table where a number or a word is expected",
-    ];
-    assert_eq!(got.len(), expected.len(), "{got:#?}");
-    for (got, expected) in got.iter().zip(expected) {
-        assert!(got.starts_with(expected), "{got}\n{expected}");
+fn a_wrong_key_or_type_is_reported_with_its_line_and_wrong_values_together() {
+    for (text, words) in [
+        ("click_n = 2.0\nclik_n = 2.0\n", ["line 2", "unknown field `clik_n`, expected one of `mode`, "]),
+        ("\nmode = \"speed\"\n", ["line 2", "unknown variant `speed`, expected `velocity` or `position`"]),
+        ("touch_n = \"light\"\n", ["line 1", "invalid type: string \"light\", expected f64"]),
+        ("[zero]\nafter_s = 1\n", ["line 1", "invalid type: map, expected a boolean"]),
+    ] {
+        let got = Config::from_toml(text).unwrap_err().to_string();
+        assert!(words.iter().all(|words| got.contains(words)), "{got}");
     }
+    let got = faults("release_n = 1.9\ncap_px_per_s = nan\n");
+    assert_eq!(got.len(), 2, "{got:?}");
+    assert!(got[0].starts_with("cap_px_per_s = NaN: choose above 0 and up to 1000000 px/s"), "{got:?}");
+    assert!(got[1].starts_with("release_n = 1.9 must be below click_n = 1.8"), "{got:?}");
 }
 
 #[test]
@@ -59,18 +56,10 @@ fn milliseconds_are_refused() {
 
 #[test]
 fn text_that_is_no_toml_is_reported_with_its_line() {
-    let got = faults("click_n = 2.0\nrelease_n 1.0\n");
-    assert!(got.len() == 1 && got[0].starts_with("line 2: not TOML: "), "{got:?}");
-    let got = faults("click_n = 2.0\nclick_n = 3.0\n");
-    assert!(got[0].starts_with("line 2: not TOML: duplicate key"), "{got:?}");
-    assert!(faults("x = \u{1}")[0].starts_with("line 1: "));
-}
-
-#[test]
-fn many_faults_are_counted() {
-    let text: String = (0..1000).map(|k| format!("key{k} = 1\n")).collect();
-    let got = faults(&text);
-    assert_eq!((got.len(), got[100].as_str()), (101, "900 more faults are not named; correct these first"));
+    for (text, line) in [("click_n = 2.0\nrelease_n 1.0\n", 2), ("click_n = 2.0\nclick_n = 3.0\n", 2), ("x = \u{1}", 1)]
+    {
+        assert!(faults(text)[0].contains(&format!("at line {line}, column")), "{text}");
+    }
 }
 
 #[test]
@@ -81,7 +70,7 @@ fn every_number_has_bounds() {
     for key in numbers {
         for value in ["nan", "inf", "-inf", "-1000.0", "1e300"] {
             let got = faults(&format!("{key} = {value}\n"));
-            assert!(got.iter().any(|line| line.starts_with(&format!("line 1: {key} = "))), "{key} {value}: {got:?}");
+            assert!(got.iter().any(|line| line.starts_with(&format!("{key} = "))), "{key} {value}: {got:?}");
         }
     }
 }
@@ -95,7 +84,8 @@ fn values_that_contradict_each_other_are_reported_together() {
         gain_high_px_per_s_per_n: 1.0,
         ..Config::default()
     };
-    let keys: Vec<String> = config.check().unwrap_err().0.into_iter().filter_map(|fault| fault.key).collect();
+    let faults = config.check().unwrap_err().0;
+    let keys: Vec<&str> = faults.iter().filter_map(|fault| fault.split(' ').next()).collect();
     assert_eq!(keys, ["touch_release_n", "release_n", "release_n", "click_n", "gain_high_px_per_s_per_n"]);
     // Taps do not ask for the keys of presses.
     Config { click: Click::Tap, click_n: 0.2, release_n: 0.25, ..Config::default() }.check().unwrap();
