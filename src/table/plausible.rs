@@ -8,7 +8,6 @@
 use std::fs::File;
 use std::os::unix::fs::FileExt as _;
 
-use parquet::basic::Compression;
 use parquet::file::metadata::ParquetMetaData;
 
 use crate::input::{UNPACKED_BYTES, UNPACKED_TIMES};
@@ -86,13 +85,6 @@ pub(super) fn check_pages(file: &File, metadata: &ParquetMetaData) -> Result<(),
                 if page.packed > end - at || page.unpacked > most(page.packed) || page.values > left {
                     return Err(FALSE.to_owned());
                 }
-                if column.compression() == Compression::SNAPPY && page.packed > page.levels {
-                    let block = snappy_length(file, at + page.head + page.levels, page.packed - page.levels);
-                    // The format's reader takes and clears as much memory as the block asks for.
-                    if block.is_none_or(|length| length > page.unpacked) {
-                        return Err(FALSE.to_owned());
-                    }
-                }
                 at += page.head + page.packed;
                 left -= if page.is_dictionary { 0 } else { page.values };
             }
@@ -108,31 +100,19 @@ struct PageHead {
     /// Rows, or entries of a dictionary, for which the reader makes room.
     values: u64,
     is_dictionary: bool,
-    /// Bytes of levels before the packed block, of pages that keep them apart (DataPageV2).
-    levels: u64,
-}
-
-/// The length that a block packed by Snappy says it has unpacked: a varint at its beginning.
-fn snappy_length(file: &File, at: u64, packed: u64) -> Option<u64> {
-    let mut bytes = [0; 5];
-    let bytes = &mut bytes[..packed.min(5) as usize];
-    file.read_exact_at(bytes, at).ok()?;
-    let end = bytes.iter().position(|byte| byte & 0x80 == 0)?;
-    Some(bytes[..=end].iter().rev().fold(0, |length, byte| length << 7 | u64::from(byte & 0x7f)))
 }
 
 fn page_head(file: &File, at: u64, room: usize) -> Result<PageHead, Bad> {
     let mut bytes = vec![0; room];
     file.read_exact_at(&mut bytes, at).map_err(|_| Bad::Unread)?;
     let mut walk = Thrift { rest: &bytes, kinds: page_kind, path: Vec::new(), deep: 0 };
-    let (mut kind, mut unpacked, mut packed, mut values, mut levels) = (0, 0, 0, 0, 0_i64);
+    let (mut kind, mut unpacked, mut packed, mut values) = (0, 0, 0, 0);
     walk.fields(&mut |path, value| match path {
         [1] => kind = value,
         [2] => unpacked = value,
         [3] => packed = value,
         // Of each kind of page the first.
         [5 | 7 | 8, 1] => values = value,
-        [8, 5 | 6] => levels = levels.saturating_add(value),
         _ => {}
     })?;
     let size = |value: i64| u64::try_from(value).map_err(|_| Bad::False);
@@ -142,7 +122,6 @@ fn page_head(file: &File, at: u64, room: usize) -> Result<PageHead, Bad> {
         unpacked: size(unpacked)?,
         values: size(values)?,
         is_dictionary: kind == DICTIONARY,
-        levels: size(levels)?,
     })
 }
 
