@@ -41,8 +41,8 @@ mod real_data {
         crops
     }
 
-    /// What is darker than its surroundings and narrower than `2 reach` samples, 0 elsewhere: the picture taken from its
-    /// closing. Shadows across the whole picture are closed, too.
+    /// What is darker than its surroundings and narrower than `2 reach` samples, 0 elsewhere: the picture taken from
+    /// its closing. Shadows across the whole picture are closed, too.
     fn ink(image: &GrayImage, reach: u32) -> GrayImage {
         let square = Mask::square(2);
         let wide = (0..reach / 2).fold(image.clone(), |grey, _| grayscale_dilate(&grey, &square));

@@ -317,7 +317,7 @@ const PEER_COLUMNS: &str =
     "stage,choice,scene,setting,error,error_unit,run_s,run_low_s,run_high_s,repeats,work,machine,version,date";
 
 #[test]
-fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
+fn the_tradeoff_keeps_every_tolerance_and_draws_peers() {
     let dir = Dir::new();
     let row = |scene: &str, setting: &str| {
         let unit = "\"largest |x - x_ref| / D over 20 step responses, full model\"";

@@ -49,7 +49,8 @@ impl Tradeoff {
     }
 }
 
-/// Writes all jobs' curves: `index.html`, `tradeoff.csv`, `<job>.png` and `.svg`. `failed`: jobs without curves, and why.
+/// Writes all jobs' curves: `index.html`, `tradeoff.csv`, `<job>.png` and `.svg`. `failed`: jobs without curves,
+/// and why.
 ///
 /// # Errors
 /// Where a file can't be written.
