@@ -10,7 +10,7 @@
 //! SD, averaged over targets and persons, so 1 is what the mean alone reaches; for maps, what two poses are confused at
 //! most, so 1/2 is what no photodiode reaches. Each person has a model of their own, as each who wears the sensor is
 //! calibrated. Errors of layouts are of the rows that a model is fitted to, those of persons left out of rows that it
-//! isn't fitted to (`held_out`), of the same recordings: measure the chosen layout with `train` and `evaluate` on others.
+//! isn't fitted to (`held_out`), of the same recordings: measure the chosen one with `train` and `evaluate` on others.
 
 mod draw;
 mod error;

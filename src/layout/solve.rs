@@ -3,8 +3,9 @@
 //! The best, greedy, pivoted and D-optimal layouts are chosen again without each person and judged on that one, who
 //! still has a model of their own (`held_out`); the thesis' eight and all candidates are judged as they are. Of maps a
 //! subject's pictures are put to one of every two poses by the rule of the others, and the error is the share put to
-//! the wrong one: judged by those who chose, two poses that do not differ are far apart already at few places of many (of 8 + 8
-//! subjects 0.0003 for 4 of 140 cells, in place of 0.5). The interval is that of the mean over persons (Student's t).
+//! the wrong one: judged by those who chose, two poses that do not differ are far apart already at few places of many
+//! (of 8 + 8 subjects 0.0003 for 4 of 140 cells, in place of 0.5). The interval is that of the mean over persons
+//! (Student's t).
 
 use lunula_live::spread::{CONFIDENCE, Spread, normal_below, t_quantile};
 use lunula_predictor::{Choice, LayoutProblem, Proof, Rules, Starts, determinant, pivoted, prove, search};
