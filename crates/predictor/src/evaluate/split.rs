@@ -36,11 +36,11 @@ pub enum By {
 }
 
 impl By {
-    /// Whether a part counts as one value, however many rows it has: what is said is of new persons, or new sessions,
-    /// and errors within one are alike.
+    /// Whether a part counts as one value, however many rows it has: what is said is of new persons, sessions, paths or
+    /// recordings, and errors within one are alike. Shuffled rows say nothing of new ones.
     #[must_use]
     pub fn counts_parts(self) -> bool {
-        matches!(self, Self::Session | Self::Subject)
+        !matches!(self, Self::Rows { .. })
     }
 }
 

@@ -108,7 +108,7 @@ fn split_bars(found: &Splits, target: &str) -> Bars {
     };
     Bars {
         title: format!("{target}: what is held out decides what looks good (marks: as wide as the 95 % intervals)"),
-        x_label: "held out".to_owned(),
+        x_label: "held out (intervals by rows are about these recordings only, the others about new ones)".to_owned(),
         y_label: format!("RMSE {}", lunula_predictor::unit_of(target)),
         groups: there.iter().map(|split| format!("{}\n{} parts", way(split.by), split.parts)).collect(),
         series: methods.iter().enumerate().map(series).collect(),

@@ -99,9 +99,12 @@ fn say_splits(common: &Common, found: &Splits) {
             common.say(&format!("by {}: the same parts as by {}", way(split.by), way(other)));
             continue;
         }
-        let few = split.by.counts_parts() && split.parts < FEWEST_UNITS;
-        let why = if few { "; too few to know how sure an RMSE on others is" } else { "" };
-        common.say(&format!("by {} ({} parts{why})", way(split.by), split.parts));
+        let about = match split.by.counts_parts() {
+            false => "; intervals are about these recordings only",
+            true if split.parts < FEWEST_UNITS => "; too few to know how sure an RMSE on others is",
+            true => "",
+        };
+        common.say(&format!("by {} ({} parts{about})", way(split.by), split.parts));
         for one in &split.methods {
             if let Some(why) = one.fault.as_ref().filter(|_| one.targets.is_empty()) {
                 common.say(&format!("  {}: {why}", one.method));

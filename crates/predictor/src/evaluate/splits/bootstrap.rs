@@ -1,5 +1,6 @@
-//! How sure an RMSE on new rows of such recordings is: blocks of rows that follow each other in time are drawn again
-//! and again (Künsch 1989, doi:10.1214/aos/1176347265), as neighbouring errors are alike.
+//! How sure an RMSE on more rows of these very recordings is: blocks of rows that follow each other in time are drawn
+//! again and again (Künsch 1989, doi:10.1214/aos/1176347265), as neighbouring errors are alike. It says nothing of new
+//! recordings, in which a sensor is put on again: what all rows of one share is in no block alone.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

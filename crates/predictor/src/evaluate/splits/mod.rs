@@ -42,8 +42,9 @@ pub struct SplitTarget {
     pub name: String,
     /// Its unit; NaN of no rows.
     pub rmse: f64,
-    /// The 95 % interval of that: of new persons or sessions where those are held out ([`By::counts_parts`]), else
-    /// from blocks of time drawn again; none of too few.
+    /// The 95 % interval of that: of new persons, sessions, paths or recordings where those are held out
+    /// ([`By::counts_parts`]); of shuffled rows from blocks of time drawn again, of these recordings only. None of too
+    /// few.
     pub interval: Option<[f64; 2]>,
     /// Whether it is surely below the mean's error on the same rows; none where that is not known.
     pub beats_mean: Option<bool>,
@@ -95,6 +96,12 @@ pub struct Leak {
 /// What the first method is called, and the second.
 const MEAN: &str = "mean";
 const NEAREST: &str = "nearest row";
+
+/// A method with paths held out may be better than the mean where its RMSE is below this share of the mean's, though
+/// few paths don't make that sure: a leak is then not what the figures show. Measured: of 40 studies of a phantom
+/// person's recordings of four days, in which the nearest row has 0.74 of the mean's error of Fx and 0.61 of Fz, 13 and
+/// 3 would be called leaks without it, none with it; of Fy, of which nothing beats the mean, 27 and 24.
+const PERHAPS_BETTER: f64 = 0.9;
 
 /// Judges methods by each way to hold out; `inputs`: columns by which the nearest row is found. A split whose parts are
 /// another's before it is not worked out again.
@@ -214,14 +221,15 @@ fn rows_and_paths(splits: &[Split]) -> Option<[&Split; 2]> {
 }
 
 /// Targets that no method knows better than the mean where whole paths are held out (recordings, where there is one
-/// path only), though one does by shuffled rows.
+/// path only), neither surely nor by a tenth of its error, though one surely does by shuffled rows.
 #[must_use]
 pub fn leaks(splits: &[Split]) -> Vec<Leak> {
     let Some([rows, paths]) = rows_and_paths(splits) else { return Vec::new() };
     let Some(mean) = paths.methods.iter().find(|one| one.method == MEAN) else { return Vec::new() };
     let one = |(k, at): (usize, &SplitTarget)| {
         let of = |one: &MethodScore| one.targets.get(k).cloned();
-        if paths.methods.iter().filter_map(of).any(|target| target.beats_mean == Some(true)) {
+        let better = |held: SplitTarget| held.beats_mean == Some(true) || held.rmse < PERHAPS_BETTER * at.rmse;
+        if paths.methods.iter().filter_map(of).any(better) {
             return None;
         }
         let better = rows.methods.iter().filter_map(|one| Some((one, of(one)?)));

@@ -115,21 +115,44 @@ fn persons(differ: f64) -> Dataset {
 #[test]
 fn intervals_of_persons_are_of_persons_and_not_of_their_rows() {
     let width = |differ: f64, by: By| {
-        let ways = [By::Trajectory, By::Session, By::Subject];
+        let ways = [WAYS[0], By::Trajectory, By::Session, By::Subject];
         let splits = compare_splits(&persons(differ), &[0, 1], &ways, vec![linear()]);
         let same: Vec<_> = splits.iter().map(|split| split.same_as).collect();
-        assert_eq!(same, [None, None, Some(By::Session)], "by time, and by what is held out");
+        assert_eq!(same, [None, None, Some(By::Trajectory), Some(By::Trajectory)], "by time, and by what is held out");
+        assert_eq!(of(&splits, By::Trajectory, "linear"), of(&splits, By::Subject, "linear"));
         let one = of(&splits, by, "linear");
-        assert_eq!(one.rmse, of(&splits, By::Trajectory, "linear").rmse);
         let [low, high] = one.interval.unwrap();
         assert!(low < one.rmse && one.rmse < high, "{one:?}");
         (high / low, one.beats_mean)
     };
-    let (alike, differing) = (width(0.0, By::Subject), width(1.5, By::Subject));
-    let by_time = width(1.5, By::Trajectory);
-    assert!(alike.1 == Some(true) && alike.0 < 1.1, "{alike:?}");
-    println!("{alike:?} {differing:?} {by_time:?}");
-    assert!(differing.1 == Some(false) && differing.0 > 2.0 * by_time.0, "{differing:?} {by_time:?}");
+    let by_time = width(1.5, WAYS[0]);
+    for by in [By::Trajectory, By::Subject] {
+        let (alike, differing) = (width(0.0, by), width(1.5, by));
+        assert!(alike.1 == Some(true) && alike.0 < 1.1, "{by:?} {alike:?}");
+        assert!(differing.1 == Some(false) && differing.0 > 2.0 * by_time.0, "{by:?} {differing:?} {by_time:?}");
+    }
+}
+
+#[test]
+fn what_two_recordings_may_know_is_no_leak_and_what_they_do_not_know_is() {
+    // Two recordings don't show how others differ: nothing is sure, but the errors themselves say enough.
+    for (own, found) in [(true, 0), (false, 1)] {
+        let splits = compare_splits(&with_labels_of_another(own).only(&[0, 1]), &[0, 1, 2], &WAYS, vec![linear()]);
+        let held = of(&splits, By::Trajectory, "linear");
+        assert_eq!((held.interval, held.beats_mean), (None, None));
+        assert_eq!(leaks(&splits).len(), found, "{splits:?}");
+    }
+}
+
+#[test]
+fn what_is_not_surely_better_than_the_mean_is_no_leak() {
+    // Inputs that say much of the target in each of three recordings, each with a gain of its own.
+    let splits = compare_splits(&persons(1.2).only(&[0, 2, 4]), &[0, 1], &WAYS, vec![linear()]);
+    let [nearest, mean] = ["nearest row", "mean"].map(|method| of(&splits, By::Trajectory, method));
+    assert!(nearest.beats_mean == Some(false) && nearest.rmse < 0.8 * mean.rmse, "{nearest:?} {mean:?}");
+    assert_eq!(of(&splits, By::Trajectory, "linear").beats_mean, Some(false));
+    assert_eq!(of(&splits, WAYS[0], "nearest row").beats_mean, Some(true));
+    assert_eq!(leaks(&splits), []);
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! How sure an RMSE on new persons, or sessions, is: each of them is one value, however long it was recorded.
+//! How sure an RMSE on new persons, sessions, paths or recordings is: each of them is one value, however long it was
+//! recorded.
 //!
 //! In: the rows of each part, their errors and a baseline's. Out: the 95 % interval of the RMSE of all rows. Squared
 //! errors of persons are skewed: one who is unlike the others is far off. They are taken to be log-normal, and the
@@ -9,7 +10,9 @@
 //! It is not as sure as it says: models without one part share most of what they trained on. Of 150 generated studies
 //! of five persons whose responses differ by 0.3 to 0.8 it held the population's RMSE in 68 to 73 % (Student's t of
 //! the squares 45 to 57 %, blocks of time 17 to 23 % of 30), of ten persons in 85 to 91 %; of persons who are alike in
-//! 96 and 99 %.
+//! 96 and 99 %. Of 40 studies of a phantom person's recordings of four days it held the linear model's RMSE of all
+//! studies, recordings held out, in 82 to 88 % (blocks of time 23 to 38 %), of 12 studies of four recordings of one day
+//! in all.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
