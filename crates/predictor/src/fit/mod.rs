@@ -4,6 +4,7 @@
 
 mod eigennails;
 mod fault;
+mod jackknife;
 mod linear;
 mod printed;
 mod quadratic;

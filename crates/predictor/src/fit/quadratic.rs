@@ -43,7 +43,12 @@ pub fn fit_quadratic(data: &Dataset, options: &LeastSquaresOptions) -> Result<(Q
     if let Some(k) = scale.iter().position(|scale| !(scale.is_normal() && scale.recip().is_normal())) {
         return Err(FitFault::Scale(data.inputs()[k].clone()));
     }
-    let report = FitReport::new(&fit, names, data);
+    let terms = |row: usize, to: &mut Vec<f64>| {
+        let first = to.len();
+        to.extend(data.x().row(row).iter().zip(centre.iter().zip(&scale)).map(|(x, (m, s))| (x - m) / s));
+        pairs.iter().for_each(|&(i, j)| to.push(to[first + i] * to[first + j]));
+    };
+    let report = FitReport::new(&fit, names, data).with_errors(&fit, &terms, data, options);
     Ok((Quadratic::new(centre, scale, offset, fit.coefficients)?, report))
 }
 

@@ -46,11 +46,14 @@ pub struct LeastSquaresOptions {
     pub refinements: usize,
     /// By what.
     pub solver: Solver,
+    /// Whether the [`FitReport`](crate::FitReport) of a fit of recordings has standard errors, which take as long again
+    /// as the fit.
+    pub standard_errors: bool,
 }
 
 impl Default for LeastSquaresOptions {
     fn default() -> Self {
-        Self { deficient: Deficient::Refuse, refinements: 2, solver: Solver::Orthogonal }
+        Self { deficient: Deficient::Refuse, refinements: 2, solver: Solver::Orthogonal, standard_errors: false }
     }
 }
 
@@ -129,7 +132,8 @@ pub struct LeastSquares {
     /// Columns that take part in the direction that the rows tell least about: a tenth or more of its largest
     /// component.
     pub near_collinear: Vec<usize>,
-    /// Targets x columns, as the coefficients; NaN where none is defined: no degrees of freedom, dropped, minimum norm,
+    /// Targets x columns, as the coefficients, of residuals that are independent of each other (those of rows that
+    /// follow each other in time are not); NaN where none is defined: no degrees of freedom, dropped, minimum norm,
     /// ridge.
     pub standard_errors: Array2<f64>,
     /// A target each, in its unit; none without degrees of freedom.

@@ -108,7 +108,7 @@ impl Predictor {
         let stopped_on = used.map(TrainedOn::all).unwrap_or_default();
         let stop = stop.map(|stop| with_lags(stop, lags.as_ref())).transpose()?;
         let seen = with_lags(data, lags.as_ref())?;
-        let fitted = recipe.fit(&seen, stop.as_deref())?;
+        let fitted = recipe.fit_with(&seen, stop.as_deref(), true)?;
         let recordings = TrainedOn::all(data);
         let training = Training {
             rows: data.rows(),

@@ -153,9 +153,20 @@ impl Recipe {
     }
 
     /// Fits to rows that have their lags already ([`with_lags`]); a network stops early on `stop`, or on a part of the
-    /// rows.
+    /// rows. Without standard errors.
     pub fn fit(&self, data: &Dataset, stop: Option<&Dataset>) -> Result<Fitted, RecipeFault> {
-        let options = LeastSquaresOptions { deficient: self.deficient, ..LeastSquaresOptions::default() };
+        self.fit_with(data, stop, false)
+    }
+
+    /// The same, with standard errors of the linear and the quadratic model where asked for.
+    pub(super) fn fit_with(
+        &self,
+        data: &Dataset,
+        stop: Option<&Dataset>,
+        standard_errors: bool,
+    ) -> Result<Fitted, RecipeFault> {
+        let options =
+            LeastSquaresOptions { deficient: self.deficient, standard_errors, ..LeastSquaresOptions::default() };
         Ok(match self.kind {
             Kind::Linear => {
                 let (model, report) = fit_linear(data, &options)?;
