@@ -1,7 +1,8 @@
 //! The error on validation recordings against how much was trained on (Fig. 105 to 107: one set, the other, both).
 //!
-//! In: the recordings trained on, in order, and those reported on. Out: a table and a picture: the first recording, the
-//! first two, .. all; and the first tenths of the time of each, as shorter calibrations would have given.
+//! In: the recordings trained on, in order, those reported on, and those on which a network stops early. Out: a table
+//! and a picture: the first recording, the first two, .. all; and the first tenths of the time of each, as shorter
+//! calibrations would have given.
 
 use std::path::{Path, PathBuf};
 
@@ -25,16 +26,18 @@ pub(in crate::predictor) struct Points {
     by_recordings: Vec<LearningPoint>,
 }
 
-/// Fits the recipe to each amount.
+/// Fits the recipe to each amount; a network stops early on `stop`, as the model does, or on a part of the rows.
 pub(in crate::predictor) fn points(
     recipe: &Recipe,
     train: &Dataset,
     validate: &Dataset,
+    stop: Option<&Dataset>,
 ) -> Result<Points, PredictorError> {
     let lags = recipe.lags(train)?;
     let (train, validate) = (with_lags(train, lags.as_ref())?, with_lags(validate, lags.as_ref())?);
     let cone = recipe.cone(train.targets())?;
-    let fit = |data: &Dataset| recipe.fit(data, None).map(|fitted| fitted.model);
+    let stop = stop.map(|stop| with_lags(stop, lags.as_ref())).transpose()?;
+    let fit = |data: &Dataset| recipe.fit(data, stop.as_deref()).map(|fitted| fitted.model);
     let tell = |model: &Model, data: &Dataset| predict(model, cone.as_ref(), data.x().view());
     Ok(Points {
         targets: train.targets().to_vec(),

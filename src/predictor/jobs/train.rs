@@ -217,7 +217,7 @@ pub fn train(
     written.map_err(|why| WriteError::File { path: out.to_owned(), why: why.to_string() })?;
     let mut pictures = Vec::new();
     if let Some((curve, held)) = outputs.learning_curve.as_ref().zip(validate.as_ref()) {
-        let points = stages.time("learning curve", || learning::points(recipe, &read.data, &held.data))?;
+        let points = stages.time("learning curve", || learning::points(recipe, &read.data, &held.data, early))?;
         pictures.push(stages.time("write", || learning::write(&points, curve, &mut places))?);
     }
     if let Some(path) = &outputs.merit {

@@ -69,6 +69,31 @@ fn what_is_reported_is_no_place_to_stop() {
 }
 
 #[test]
+fn a_learning_curve_ends_at_the_model_also_where_it_stops_on_others() {
+    let folder = Folder::new();
+    let [a, b] = folder.two();
+    let [stop, held] =
+        [("stop.csv", 0.9), ("held.csv", 1.4)].map(|(name, phase)| folder.recorded(name, phase, 1.0, true));
+    let network = Recipe { restarts: 2, max_epochs: 30, ..Recipe::new(Kind::Network { hidden: 2 }) };
+    for lags_s in [vec![], vec![0.1]] {
+        let curve = folder.path("curve.csv");
+        let outputs =
+            TrainOutputs { model: folder.path("network.json"), learning_curve: Some(curve.clone()), merit: None };
+        let wanted = Wanted { targets: Target::parse("force").unwrap().columns().to_vec(), ..Wanted::default() };
+        let options = TrainOptions { wanted, recipe: Recipe { lags_s, ..network.clone() }, level: 0.9 };
+        let report = train(&inputs(&[&a, &b], &[&held], &[&stop]), &options, &outputs, &Watch::nobody()).unwrap();
+        let text = std::fs::read_to_string(&curve).unwrap();
+        let [names, last] = [text.lines().next(), text.lines().last()].map(|line| line.unwrap().split(','));
+        let at_end: Vec<(&str, &str)> = names.zip(last).filter(|(name, _)| name.ends_with("_validate_rmse")).collect();
+        assert_eq!(at_end.len(), 3, "{text}");
+        for ((name, value), (_, rmse)) in at_end.iter().zip(&report.validation.unwrap().rmse.0) {
+            let value: f64 = value.parse().unwrap();
+            assert!((value / rmse - 1.0).abs() <= 1e-6, "{name}: {value} {rmse}");
+        }
+    }
+}
+
+#[test]
 fn a_recording_under_two_names_is_told() {
     let folder = Folder::new();
     let [a, b] = folder.two();
