@@ -54,9 +54,9 @@ pub(super) fn splits(
     warnings.extend(leaks.iter().map(|leak| {
         let unit = unit_of(&leak.target);
         format!(
-            "{}: by shuffled rows {} is off by {:.3} {unit}, but with whole paths held out nothing is better than the \
-             mean ({:.3} {unit}; {} {:.3} {unit}): rows of one recording on both sides leak, and these inputs say \
-             nothing of {}",
+            "{}: by shuffled rows {} is off by {:.3} {unit}, but with whole paths held out nothing is surely better \
+             than the mean ({:.3} {unit}; {} {:.3} {unit}): rows of one recording on both sides leak, and these inputs \
+             say nothing of {}",
             leak.target, leak.method, leak.by_rows, leak.mean, leak.method, leak.by_paths, leak.target
         )
     }));
