@@ -86,7 +86,7 @@ fn a_learning_curve_ends_at_the_model_also_where_it_stops_on_others() {
         let [names, last] = [text.lines().next(), text.lines().last()].map(|line| line.unwrap().split(','));
         let at_end: Vec<(&str, &str)> = names.zip(last).filter(|(name, _)| name.ends_with("_validate_rmse")).collect();
         assert_eq!(at_end.len(), 3, "{text}");
-        for ((name, value), (_, rmse)) in at_end.iter().zip(&report.validation.unwrap().rmse.0) {
+        for ((name, value), (_, rmse)) in at_end.iter().zip(&report.validation.as_ref().unwrap().rmse.0) {
             let value: f64 = value.parse().unwrap();
             assert!((value / rmse - 1.0).abs() <= 1e-6, "{name}: {value} {rmse}");
         }
