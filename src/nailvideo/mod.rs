@@ -8,7 +8,8 @@
 //!
 //! Coordinates are those of the *shown* picture: the centre of its top-left pixel is (0, 0), x to the right, y down. On
 //! the nail u is across in half widths, positive to the right with the tip up, v along the axis in half lengths,
-//! positive to the tip. Colours are as encoded, not linear in light.
+//! positive to the tip. The photodiodes' values are of light: the film's curve is undone. Where the nail is, what lies
+//! over it, normalized frames and maps are of colours as encoded.
 
 mod affine;
 mod error;

@@ -144,9 +144,9 @@ mod tests {
     use super::*;
     use crate::nailvideo::sample::Planes;
     use crate::nailvideo::scenes::{Scene, Shot};
-    use crate::video::{Matrix, Turn};
+    use crate::video::{Curve, Matrix, Turn};
 
-    const PLANES: Planes = Planes { turn: Turn::None, matrix: Matrix::BT709, site: (0.5, 0.5) };
+    const PLANES: Planes = Planes { turn: Turn::None, matrix: Matrix::BT709, curve: Curve::Bt709, site: (0.5, 0.5) };
 
     #[test]
     fn many_at_a_time_are_as_one_by_one() {

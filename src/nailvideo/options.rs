@@ -13,11 +13,11 @@ use crate::photo::outline::Side;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Light {
-    /// The red of the same place, which blood hardly changes: 100 (ln green - ln red)
+    /// The red of the same place, which blood hardly changes: 100 (ln green - ln red), of light
     Red,
-    /// The green of the skin about the nail: 100 (ln green - ln green of the skin)
+    /// The green of the skin about the nail: 100 (ln green - ln green of the skin), of light
     Skin,
-    /// Nothing: green as a fraction of full scale
+    /// Nothing: green light as a fraction of full scale's
     None,
 }
 
@@ -26,9 +26,9 @@ impl Light {
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Red => "100 (ln green - ln red)",
-            Self::Skin => "100 (ln green - ln green of the skin)",
-            Self::None => "green, fraction of full scale as encoded",
+            Self::Red => "100 (ln green - ln red) of light",
+            Self::Skin => "100 (ln green - ln green of the skin) of light",
+            Self::None => "green light, fraction of full scale's",
         }
     }
 }

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::nailvideo::affine::Affine;
-use crate::video::{Format, Matrix, Picture};
+use crate::video::{Curve, Format, Lit, Matrix, Picture};
 
 /// What one frame shows.
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +17,7 @@ pub(in crate::nailvideo) struct Shot {
     pub(in crate::nailvideo) blanched: f64,
     /// A grey rod across the nail: its middle along the axis in half lengths, and half its width.
     pub(in crate::nailvideo) rod: Option<[f64; 2]>,
-    /// Light: factor on the samples, and its slope across the picture's width.
+    /// Light: by what it is multiplied, and the slope of that across the picture's width.
     pub(in crate::nailvideo) light: [f64; 2],
     pub(in crate::nailvideo) nail: bool,
 }
@@ -126,6 +126,9 @@ impl Scene {
         let back = shot.motion.inverse().expect("a motion");
         let nail = self.frame_from_nail.inverse().expect("a nail has an area");
         let texture = self.texture(&back, shot.nail);
+        let [level, slope] = shot.light;
+        let light = |x: usize| Curve::Bt709.times(level + slope * (x as f64 / width as f64 - 0.5));
+        let light: Vec<Lit> = (0..width).map(light).collect();
         let mut full = Vec::with_capacity(width * height);
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let at = back.of([x as f64, y as f64]);
@@ -135,8 +138,7 @@ impl Scene {
                 let cover = 1.0 / (1.0 + (-60.0 * (half - (v - middle - 0.2 * u).abs())).exp());
                 rgb = rgb.map(|c| c + cover * (0.35 - c));
             }
-            let light = shot.light[0] + shot.light[1] * (x as f64 / width as f64 - 0.5);
-            full.push(Matrix::BT709.from_rgb(rgb.map(|c| (c * light).clamp(0.0, 1.0))));
+            full.push(Matrix::BT709.from_rgb(rgb.map(|c| light[x].of(c).clamp(0.0, 1.0))));
         }
         let mut picture = Picture::new(self.format);
         let normal = |random: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(random) };

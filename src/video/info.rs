@@ -6,7 +6,7 @@ use ffmpeg::util::chroma::Location;
 use ffmpeg::{Rational, color, frame};
 use ffmpeg_next as ffmpeg;
 
-use super::{Format, Matrix, Plane, Transfer, Turn};
+use super::{Curve, Format, Matrix, Plane, Transfer, Turn};
 use crate::video::colour::pixel;
 use crate::video::read::source::Source;
 
@@ -21,6 +21,8 @@ pub struct Info {
     pub pixel_aspect: f64,
     /// The colour matrix and range of the frames as they are handed out.
     pub matrix: Matrix,
+    /// How samples of the frames as they are handed out stand for light.
+    pub curve: Curve,
     /// Which HDR the file is in, of which frames are made ordinary ones.
     pub hdr: Option<&'static str>,
     /// The file does not say which matrix; BT.709 is taken from 720 rows on, else BT.601.
@@ -55,6 +57,7 @@ impl Info {
             turn: Turn::None,
             pixel_aspect: 1.0,
             matrix: Matrix::BT709,
+            curve: Curve::default(),
             hdr: None,
             matrix_assumed: true,
             chroma_site: None,
@@ -122,6 +125,7 @@ pub(super) fn info(
         turn,
         pixel_aspect: aspect(first.aspect_ratio()).or_else(|| aspect(source.decoder.aspect_ratio())).unwrap_or(1.0),
         matrix,
+        curve: curve(stated_transfer(source, first), matrix.transfer),
         hdr: matrix.transfer.hdr(),
         matrix_assumed,
         chroma_site: chroma_site(first.chroma_location()).filter(|_| subsampling.is_some() && converted.is_none()),
@@ -241,11 +245,25 @@ fn matrix(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -> 
     Ok((Matrix { full_range, transfer: transfer(source, first, warnings), ..matrix }, assumed))
 }
 
+fn stated_transfer(source: &Source, first: &frame::Video) -> color::TransferCharacteristic {
+    Some(first.color_transfer_characteristic())
+        .filter(|&stated| stated != color::TransferCharacteristic::Unspecified)
+        .unwrap_or(source.decoder.color_transfer_characteristic())
+}
+
+/// What says nothing, and what is not known here, is BT.709's.
+fn curve(stated: color::TransferCharacteristic, transfer: Transfer) -> Curve {
+    use color::TransferCharacteristic as Known;
+    match stated {
+        Known::IEC61966_2_1 => Curve::Srgb,
+        Known::GAMMA22 => Curve::Power,
+        _ => Curve::of_read(transfer),
+    }
+}
+
 fn transfer(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -> Transfer {
     use color::TransferCharacteristic as Known;
-    let stated = Some(first.color_transfer_characteristic())
-        .filter(|&stated| stated != Known::Unspecified)
-        .unwrap_or(source.decoder.color_transfer_characteristic());
+    let stated = stated_transfer(source, first);
     match stated {
         Known::ARIB_STD_B67 => Transfer::HybridLogGamma,
         Known::SMPTE2084 => Transfer::PerceptualQuantizer,

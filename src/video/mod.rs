@@ -18,6 +18,8 @@ mod turn;
 mod write;
 
 pub use colour::bgr::Bgr;
+pub use colour::curve::Curve;
+pub(crate) use colour::curve::Lit;
 pub use colour::matrix::Matrix;
 pub use colour::transfer::Transfer;
 pub use error::VideoError;

@@ -50,7 +50,8 @@ fn the_nail_is_followed_within_the_bars() {
     let hidden = |k: usize| Shot {
         motion: motion(&scene, k, 0.03),
         rod: Some([1.2 - 0.4 * press(k), 0.12]),
-        light: [1.0, 0.24 * (0.2 * k as f64).sin()],
+        // Some 12 % of the samples at either border.
+        light: [1.0, 0.44 * (0.2 * k as f64).sin()],
         ..pressed(k)
     };
     // Bars: section 2.6 of the design.

@@ -14,11 +14,12 @@ const SIDES_S: [f64; 2] = [0.5, 1.5];
 /// Such a difference, of the noise's SD in one sample: 8 standard errors of it, and more (measured: no figures in 600
 /// traces without a press). Whether the step itself is large enough is for its course to say.
 const LEAST_SDS: f64 = 4.0;
-/// A step in the values themselves, of their size where the nail is at rest: 2 % of the light (assumed: below it are
-/// vasomotion and exposure).
-const LEAST_PART: f64 = 0.02;
+/// A step in the values themselves, of their size where the nail is at rest: 3.7 % of the light, 2 % as encoded
+/// (assumed: below it are vasomotion and exposure; of a press, ratios of light change 1.8 times as much as those of
+/// colours as encoded).
+const LEAST_PART: f64 = 0.037;
 /// The same over the longer means, in which slow changes are larger.
-const LEAST_PART_SLOWLY: f64 = 0.04;
+const LEAST_PART_SLOWLY: f64 = 0.074;
 /// Samples on each side, and their share of the frames: over a gap slow changes look like steps.
 const FEWEST: usize = 4;
 const LEAST_KNOWN: f64 = 0.6;

@@ -1,6 +1,6 @@
 //! How far light alone takes a photodiode's value along: glare, and shadows that colour the light.
 //!
-//! In: ln green/red and ln blue/red of each photodiode over the video. Blood moves both along a line, whatever the
+//! In: ln green/red and ln blue/red of light at each photodiode over the video. Blood moves both along a line, whatever the
 //! brightness; white that is added, and light of another colour, move blue by more than that. Out: where a photodiode
 //! leaves its own line for half a second and more, by how much its value may be off. Each has a line of its own, as
 //! zones of the nail may. Not determined: a colour of light that moves both as blood does, and light that lasts over
@@ -18,7 +18,7 @@ const AROUND: usize = 7;
 const BLOOD: [f64; 2] = [0.3, 1.0];
 /// Off its line by so much, of 100 ln, is light (measured on 16 phantoms of 190 px without any: 1.1 at most; glare of
 /// 15 % takes it to 3.2 where the value is off by 8, soft shadows to 3.3 and more where that is off by 4), ..
-const LEAST: f64 = 2.5;
+const LEAST: f64 = 4.6;
 /// .. and by so many times the noise of a frame, and the largest error that lasts (measured: a dark, noisy film 1.9
 /// times the noise; nails of 45 px, whose errors last, are 1.6 to 2.5 of 100 ln off their line).
 const LEAST_SDS: f64 = 3.0;
@@ -57,7 +57,7 @@ pub(super) fn tinted<'a>(named: impl Iterator<Item = (&'a str, &'a [f64])>, ligh
     let (decimals, unit) = match light {
         Light::Red => (1, "of 100 ln (green / red)"),
         Light::Skin => (1, "of 100 ln (green / skin)"),
-        Light::None => (4, "of green, full scale being 1"),
+        Light::None => (4, "of green light, full scale being 1"),
     };
     let most = |tint: &[f64]| tint.iter().fold(0.0, |most, by| f64::max(most, by.abs()));
     let all: Vec<String> = named
@@ -136,7 +136,7 @@ mod tests {
         // As of a green of 0.4: percent of it.
         let none = said(Light::None, 0.004);
         assert!(none.contains("goes over P1 (0.0") && !none.contains("(0.0000)"), "{none}");
-        assert!(none.contains("of green, full scale being 1") && !none.contains(" ln "), "{none}");
+        assert!(none.contains("of green light, full scale being 1") && !none.contains(" ln "), "{none}");
         assert!(said(Light::Skin, 1.0).contains("of 100 ln (green / skin)"));
         let said = said(Light::Red, 1.0);
         assert!(said.contains("goes over P1 (") && !said.contains("P2"), "{said}");

@@ -5,7 +5,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::region::{Group, NEAR};
 use crate::nailvideo::affine::{Affine, moved};
 use crate::nailvideo::grid::{Grid, LANES, Part, samples, shown_size};
-use crate::video::{Frame, Info, Matrix, Turn};
+use crate::video::{Curve, Frame, Info, Matrix, Turn};
 
 /// Where a file that does not say so has its chroma samples: on the left, as H.264 and HEVC say.
 const SITE: (f64, f64) = (0.0, 0.5);
@@ -15,13 +15,15 @@ const SITE: (f64, f64) = (0.0, 0.5);
 pub(in crate::nailvideo) struct Planes {
     pub(in crate::nailvideo) turn: Turn,
     pub(in crate::nailvideo) matrix: Matrix,
+    pub(in crate::nailvideo) curve: Curve,
     /// Where chroma samples lie, in luma samples right of and below the block's first.
     pub(in crate::nailvideo) site: (f64, f64),
 }
 
 impl Planes {
     pub(in crate::nailvideo) fn of(info: &Info) -> Self {
-        Self { turn: info.turn, matrix: info.matrix, site: info.chroma_site.unwrap_or(SITE) }
+        let site = info.chroma_site.unwrap_or(SITE);
+        Self { turn: info.turn, matrix: info.matrix, curve: info.curve, site }
     }
 }
 
@@ -31,6 +33,7 @@ pub(in crate::nailvideo) struct Colours {
     luma: Grid,
     chroma: Option<[Grid; 2]>,
     matrix: Matrix,
+    curve: Curve,
     /// Whether [`Grid::many`] may be asked for all points that are near.
     holds_near: bool,
 }
@@ -72,9 +75,9 @@ impl Colours {
     }
 
     pub(in crate::nailvideo) fn of_part(frame: &Frame<'_>, planes: Planes, part: Part) -> Self {
-        let Planes { turn, matrix, site } = planes;
+        let Planes { turn, matrix, curve, site } = planes;
         let luma = Grid::of_luma(&samples(frame.luma, turn.quarters()), part, 1);
-        Self { luma, chroma: Grid::of_chroma(frame, turn, site, part), matrix, holds_near: false }
+        Self { luma, chroma: Grid::of_chroma(frame, turn, site, part), matrix, curve, holds_near: false }
     }
 
     /// Whether [`Grid::many`] may be asked for all points between these corners.
@@ -112,6 +115,11 @@ impl Colours {
             let rgb = self.rgb(samples);
             std::array::from_fn(|c| if self.chroma.is_some() { rgb[c] - none[c] } else { 0.0 })
         })
+    }
+
+    /// Light of red, green and blue as encoded, fractions of that of full scale.
+    pub(in crate::nailvideo) fn light_of(&self, rgb: [f64; 3]) -> [f64; 3] {
+        rgb.map(|part| self.curve.light(part))
     }
 
     /// The mean over a group's points.

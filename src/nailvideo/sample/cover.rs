@@ -5,8 +5,8 @@
 //! photodiodes under another finger of the same hand were given as the nail's (`lunula phantom nailvideo --finger`, 24
 //! persons: 663 of 1075), off by up to 35 of 100 ln(green/red).
 
-use super::Limits;
 use super::region::Group;
+use super::{Limits, Logs};
 use crate::median::median_of;
 use crate::nailvideo::follow::{CELLS, Covered, Rim, cell_at, cell_middle, covered};
 
@@ -31,10 +31,10 @@ pub(super) fn box_cells() -> Vec<Group> {
 /// What is covered by something that has this rim; `changes` are those of the box' cells.
 pub(super) fn covered_by<'a>(
     rim: &Rim,
-    changes: impl Iterator<Item = (&'a Group, Option<[f64; 3]>)>,
+    changes: impl Iterator<Item = (&'a Group, Option<Logs>)>,
     is_grey: bool,
 ) -> Covered {
-    let changes: Vec<Option<[f64; 3]>> = changes.map(|(_, change)| change).collect();
+    let changes: Vec<Option<[f64; 3]>> = changes.map(|(_, change)| Some(change?.colour)).collect();
     let fits = |cell: usize| if rim.has(cell) { None } else { changes[cell] };
     let light_of = |k: usize| median_of((0..CELLS * CELLS).filter_map(fits).map(|c| c[k])).unwrap_or(f64::NAN);
     let light = std::array::from_fn(light_of);

@@ -35,12 +35,7 @@ impl Scene {
                 for (covered, own) in held.iter().map(|cover| cover.over(at)).filter(|(covered, _)| *covered > 0.0) {
                     (0..3).for_each(|c| colour[c] += covered as f32 * (own[c] as f32 - colour[c]));
                 }
-                let (factor, mirrored) = (light.over(at), light.mirrored(at) as f32);
-                let lit = |c: usize| {
-                    let lit = colour[c] * factor[c] as f32;
-                    lit + (1.0 - lit).max(0.0) * mirrored
-                };
-                (*red, *green, *blue) = (lit(0), lit(1), lit(2));
+                [*red, *green, *blue] = light.on(colour, at);
             }
             add_noise(&mut row.rgb, noise_sd, self.options.seed, frame, y);
         })

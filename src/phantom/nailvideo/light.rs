@@ -1,8 +1,8 @@
 //! The light on each frame: its level, its colour, its gradient over the picture and its glare on the nail, which all
 //! change with time.
 //!
-//! In: the options and a time. Out: by what each channel of each pixel is multiplied, as encoded, and how much of full
-//! white is mirrored. A gradient turns once in 40 s; level, colour and glare drift with rates of 0.02 to 0.2 Hz
+//! In: the options, a time and an encoded colour. Out: that colour in the light of its place. Light is multiplied and
+//! glare added before a camera encodes, so the curve that the film is read with is undone for both. A gradient turns once in 40 s; level, colour and glare drift with rates of 0.02 to 0.2 Hz
 //! (assumed). Glare is a streak along the nail, a twentieth of the nail wide.
 
 use std::f64::consts::TAU;
@@ -12,6 +12,7 @@ use rand::RngExt;
 use super::{Affine, NailVideoOptions};
 use crate::phantom::motion::wave::{Wave, random_wave};
 use crate::phantom::nail::{NailScene, numbers};
+use crate::video::{Curve, Lit};
 
 const KIND_LIGHT: u32 = 43;
 const DRIFT_HZ: f64 = 0.05;
@@ -20,6 +21,7 @@ const TURN_S: f64 = 40.0;
 /// The light of a scene.
 #[derive(Debug, Clone)]
 pub(super) struct DriftingLight {
+    curve: Curve,
     level: f64,
     colour: f64,
     gradient: f64,
@@ -36,11 +38,14 @@ pub(super) struct DriftingLight {
 /// from the nail's.
 const GLARE: [f64; 2] = [0.05, 0.22];
 const GLARE_REACH: [f64; 2] = [0.5, 0.3];
+/// Glare below this, of full white, changes nothing by more than 0.12 of 255 (4.5 times as much, of what is black).
+const LEAST_GLARE: f64 = 1e-4;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FrameLight {
-    /// In the picture's middle: red, green, blue.
-    channels: [f64; 3],
+    curve: Curve,
+    /// In the picture's middle: red, green, blue; none where they are as they were.
+    channels: Option<[Lit; 3]>,
     /// Change from the middle to the right border and to the lower one.
     gradient: [f64; 2],
     half_px: [f64; 2],
@@ -55,6 +60,7 @@ impl DriftingLight {
     pub(super) fn new(options: &NailVideoOptions, scene: &NailScene) -> Self {
         let wave = |index: u32| random_wave(DRIFT_HZ, 0.4..4.0, options.seed, KIND_LIGHT, index);
         Self {
+            curve: options.curve(),
             level: 0.01 * options.light_drift_percent,
             colour: 0.01 * options.colour_drift_percent,
             gradient: 0.01 * options.gradient_percent,
@@ -76,8 +82,10 @@ impl DriftingLight {
         let level = flicker * (1.0 + self.level * level);
         let colour = self.colour * colour;
         let (sin, cos) = (self.phase + TAU * t_s / TURN_S).sin_cos();
+        let channels = [level * (1.0 + colour), level, level * (1.0 - colour)];
         FrameLight {
-            channels: [level * (1.0 + colour), level, level * (1.0 - colour)],
+            curve: self.curve,
+            channels: (channels != [1.0; 3]).then(|| channels.map(|channel| self.curve.times(channel))),
             gradient: [self.gradient * cos, self.gradient * sin],
             half_px: self.half_px,
             glare: self.glare,
@@ -92,8 +100,24 @@ impl DriftingLight {
 }
 
 impl FrameLight {
+    /// An encoded colour in the light at a pixel.
+    pub(super) fn on(&self, colour: [f32; 3], at: [f64; 2]) -> [f32; 3] {
+        let mut lit = colour;
+        if let Some(channels) = self.over(at) {
+            (0..3).for_each(|c| lit[c] = channels[c].of(f64::from(lit[c])) as f32);
+        }
+        let mirrored = self.mirrored(at);
+        if mirrored > LEAST_GLARE {
+            lit = lit.map(|part| {
+                let light = self.curve.light(f64::from(part));
+                self.curve.encoded(light + (1.0 - light).max(0.0) * mirrored) as f32
+            });
+        }
+        lit
+    }
+
     /// How much of full white is mirrored at a pixel.
-    pub(super) fn mirrored(&self, [x, y]: [f64; 2]) -> f64 {
+    fn mirrored(&self, [x, y]: [f64; 2]) -> f64 {
         if self.glare == 0.0 {
             return 0.0;
         }
@@ -104,10 +128,18 @@ impl FrameLight {
         self.glare * (-0.5 * (across * across + along * along)).exp()
     }
 
-    /// What red, green and blue are multiplied by at a pixel.
-    pub(super) fn over(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+    /// What the light of red, green and blue is multiplied by at a pixel.
+    pub(super) fn factors(&self, at: [f64; 2]) -> [f64; 3] {
+        self.over(at).map_or([1.0; 3], |channels| channels.map(Lit::factor))
+    }
+
+    /// None where the light is as it was.
+    fn over(&self, [x, y]: [f64; 2]) -> Option<[Lit; 3]> {
+        if self.gradient == [0.0; 2] {
+            return self.channels;
+        }
         let [right, down] = [(x + 0.5) / self.half_px[0] - 1.0, (y + 0.5) / self.half_px[1] - 1.0];
-        let here = (1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0);
-        self.channels.map(|channel| channel * here)
+        let here = self.curve.times((1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0));
+        Some(self.channels.map_or([here; 3], |channels| channels.map(|channel| channel.and(here))))
     }
 }

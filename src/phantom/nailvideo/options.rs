@@ -13,7 +13,7 @@ use crate::phantom::presses::Presses;
 use crate::phantom::request::{parse_size, parse_span_of_frames, positions};
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::Coding;
-use crate::video::{Format, Transfer};
+use crate::video::{Curve, Format, Transfer};
 
 /// What the finger does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
@@ -244,6 +244,11 @@ impl NailVideoOptions {
             ambient_v: 0.0,
             ..LogOptions::default()
         }
+    }
+
+    /// The curve that the film is read with.
+    pub(super) fn curve(&self) -> Curve {
+        Curve::of_read(self.coding.matrix().transfer)
     }
 
     /// How the file's samples are laid out: of 10 bits in HDR, as cameras have it.

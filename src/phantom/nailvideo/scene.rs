@@ -48,13 +48,14 @@ pub struct FrameTruth {
     pub motion: Option<Affine>,
     /// What the finger does.
     pub touch: Touch,
-    /// Red, green and blue of the normalized nail over each photodiode's disc, in the first light.
+    /// Red, green and blue light of the normalized nail over each photodiode's disc, in the first light: of the disc's
+    /// mean as encoded, by the curve that the film is read with.
     pub photodiodes: Vec<[f64; 3]>,
     /// Which share of each disc is covered or out of the picture.
     pub hidden: Vec<f64>,
     /// Whether nothing of the nail is in the picture.
     pub gone: bool,
-    /// What the light multiplies red, green and blue by at the nail's middle.
+    /// What red, green and blue light is multiplied by at the nail's middle.
     pub light: [f64; 3],
 }
 

@@ -31,15 +31,17 @@ impl Scene {
             // The shares' sum is 1 but for rounding.
             if count == samples.len() { 0.0 } else { (1.0 - share).clamp(0.0, 1.0) }
         };
+        let curve = self.options.curve();
+        let light_of = |colour: [f64; 3]| colour.map(|part| curve.light(part));
         let corners = || self.nail.subject.nail.corners().into_iter().map(|[u, v]| seen(u, v));
         FrameTruth {
             time_s,
             motion: (!cut).then_some(motion),
             touch: moment.touch,
-            photodiodes: self.discs.colours(&moment.weights),
+            photodiodes: self.discs.colours(&moment.weights).into_iter().map(light_of).collect(),
             hidden: self.positions.photodiodes.iter().map(|place| hidden(place.u, place.v)).collect(),
             gone: cut || !corners().any(inside),
-            light: self.light.at(time_s, &motion).over(motion.apply(self.nail.camera.centre_px)),
+            light: self.light.at(time_s, &motion).factors(motion.apply(self.nail.camera.centre_px)),
         }
     }
 
@@ -54,7 +56,7 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::phantom::nailvideo::{Affine, NailProtocol, NailVideoOptions};
-    use crate::video::{Matrix, Picture};
+    use crate::video::{Curve, Matrix, Picture};
 
     /// A small, fast scene without noise.
     fn small(protocol: NailProtocol) -> NailVideoOptions {
@@ -103,14 +105,15 @@ mod tests {
             let (truth, picture) = (scene.truth(frame), scene.picture(frame));
             let motion = truth.motion.unwrap();
             for (photodiode, colour) in truth.photodiodes.iter().enumerate() {
-                let lit = std::array::from_fn(|c| colour[c] * truth.light[c]);
+                let lit = std::array::from_fn(|c| Curve::Bt709.encoded(colour[c] * truth.light[c]));
                 let gap = luma(&scene, &picture, motion, photodiode) - Matrix::BT709.from_rgb(lit)[0];
                 assert!(gap.abs() <= NEAR, "frame {frame} P{}: {gap}", photodiode + 1);
             }
             assert!(!truth.gone && truth.hidden.iter().all(|hidden| *hidden == 0.0));
         }
         // The press blanches by as much as the issue has it.
-        let [rest, pressed] = [0, 100].map(|frame| scene.truth(frame).photodiodes[0]);
+        let [rest, pressed] =
+            [0, 100].map(|frame| scene.truth(frame).photodiodes[0].map(|light| Curve::Bt709.encoded(light)));
         let [red, green, blue] = std::array::from_fn(|c| pressed[c] / rest[c] - 1.0);
         assert!((0.0..=0.05).contains(&red) && (0.17..=0.26).contains(&green) && (0.10..=0.20).contains(&blue));
     }
@@ -130,8 +133,8 @@ mod tests {
             let square = |(k, value): (usize, &u8)| {
                 let at = [(k % width) as f64, (k / width) as f64];
                 let [x, y] = back.apply(at);
-                let (colour, light) = (field.colour(x, y), light.over(at));
-                let lit = std::array::from_fn(|c| colour[c] * light[c]);
+                let (colour, factors) = (field.colour(x, y), light.factors(at));
+                let lit = std::array::from_fn(|c| Curve::Bt709.encoded(factors[c] * Curve::Bt709.light(colour[c])));
                 (f64::from(*value) - Matrix::BT709.from_rgb(lit)[0]).powi(2)
             };
             let luma = &picture.planes[0];

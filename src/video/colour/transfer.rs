@@ -1,13 +1,13 @@
 //! Transfer functions: HDR video (ITU-R BT.2100) to what an ordinary camera encodes of the same light, and back.
 //!
-//! Ordinary video is taken for a power of light, so that the ratio of two channels stays as light comes and goes. In
+//! HDR is made ordinary by a power of light, so that the ratio of two channels stays as light comes and goes. In
 //! hybrid log-gamma, the HDR of most phones, and with the perceptual quantizer it does not, and in BT.2020's primaries
-//! red holds a third of green.
+//! red holds a third of green. What ordinary frames say of light is [`Curve`](super::curve::Curve)'s.
 
 /// How R'G'B' stand for light.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Transfer {
-    /// A power of light, or near it: BT.601, BT.709, sRGB.
+    /// A power of light, or near it: BT.601, BT.709, sRGB; which, `Info::curve` says.
     #[default]
     Power,
     /// Hybrid log-gamma, BT.2100, Table 5.
@@ -16,8 +16,8 @@ pub enum Transfer {
     PerceptualQuantizer,
 }
 
-/// The power of light of which ordinary video is the inverse.
-const GAMMA: f64 = 2.2;
+/// The power of light of which ordinary video that is made of HDR is the inverse.
+pub(super) const GAMMA: f64 = 2.2;
 /// White of ordinary video in HDR: 75 % of hybrid log-gamma, 203 cd/m2 (BT.2408); as light.
 const HLG_WHITE: f64 = 0.264_962_560_421_007_24;
 const PQ_WHITE: f64 = 203.0 / 10_000.0;
