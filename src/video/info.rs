@@ -280,3 +280,24 @@ fn transfer(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -
 fn chroma_site(location: Location) -> Option<(f64, f64)> {
     pixel::CHROMA_SITES.iter().find(|(known, ..)| *known == location).map(|(.., site)| *site)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_is_the_files_own_where_it_says_one() {
+        use color::TransferCharacteristic as Known;
+        let cases = [
+            (Known::Unspecified, Transfer::Power, Curve::Bt709),
+            (Known::BT709, Transfer::Power, Curve::Bt709),
+            (Known::SMPTE170M, Transfer::Power, Curve::Bt709),
+            (Known::IEC61966_2_1, Transfer::Power, Curve::Srgb),
+            (Known::GAMMA22, Transfer::Power, Curve::Power),
+            (Known::ARIB_STD_B67, Transfer::HybridLogGamma, Curve::Power),
+        ];
+        for (stated, transfer, expected) in cases {
+            assert_eq!(curve(stated, transfer), expected, "{stated:?}");
+        }
+    }
+}

@@ -19,7 +19,7 @@ mod write;
 
 pub use colour::bgr::Bgr;
 pub use colour::curve::Curve;
-pub(crate) use colour::curve::Lit;
+pub(crate) use colour::curve::{Lit, Times};
 pub use colour::matrix::Matrix;
 pub use colour::transfer::Transfer;
 pub use error::VideoError;

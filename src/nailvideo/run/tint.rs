@@ -1,10 +1,10 @@
 //! How far light alone takes a photodiode's value along: glare, and shadows that colour the light.
 //!
-//! In: ln green/red and ln blue/red of light at each photodiode over the video. Blood moves both along a line, whatever the
-//! brightness; white that is added, and light of another colour, move blue by more than that. Out: where a photodiode
-//! leaves its own line for half a second and more, by how much its value may be off. Each has a line of its own, as
-//! zones of the nail may. Not determined: a colour of light that moves both as blood does, and light that lasts over
-//! the whole video.
+//! In: ln green/red and ln blue/red of the light at each photodiode over the video. Blood moves both along a line,
+//! whatever the brightness; white that is added, and light of another colour, move blue by more than that. Out: where a
+//! photodiode leaves its own line for half a second and more, by how much its value may be off. Each has a line of its
+//! own, as zones of the nail may. Not determined: a colour of light that moves both as blood does, and light that lasts
+//! over the whole video.
 
 use crate::median::{ends, median_of};
 use crate::nailvideo::options::Light;
@@ -13,16 +13,18 @@ use crate::nailvideo::press::noise_sd;
 /// Frames on each side that are averaged, by their median: what lasts shorter is noise.
 const AROUND: usize = 7;
 /// Change of ln blue/red with that of ln green/red, as blood may have it (measured: 0.6 to 0.8 of photodiodes that
-/// change much, phantoms; real nails, by what `phantom` knows of their colours, have 0.5 to 0.95); shadows that were
-/// tried have 1.8 and 2.
+/// change much, phantoms, of colours as encoded and of light; real nails, by what `phantom` knows of their colours,
+/// have 0.5 to 0.95); shadows that were tried have 1.8 and 2.
 const BLOOD: [f64; 2] = [0.3, 1.0];
-/// Off its line by so much, of 100 ln, is light (measured on 16 phantoms of 190 px without any: 1.1 at most; glare of
-/// 15 % takes it to 3.2 where the value is off by 8, soft shadows to 3.3 and more where that is off by 4), ..
+/// Off its line by so much, of 100 ln, is light (measured on 16 phantoms of 190 px without any: 2.8 at most; glare of
+/// 15 % takes it to 7.5 where the value is off by 25. As encoded, 1.8 times less, soft shadows take it to 3.3 and more
+/// where the value is off by 4), ..
 const LEAST: f64 = 4.6;
-/// .. and by so many times the noise of a frame, and the largest error that lasts (measured: a dark, noisy film 1.9
-/// times the noise; nails of 45 px, whose errors last, are 1.6 to 2.5 of 100 ln off their line).
+/// .. and by so many times the noise of a frame, and the largest error that lasts (measured as encoded: a dark, noisy
+/// film 1.9 times the noise; nails of 45 px, whose errors last, are 1.6 to 2.5 of 100 ln off their line).
 const LEAST_SDS: f64 = 3.0;
-/// A value is off by so many times as much (measured, the largest of each: glare 1.7 to 2.6, shadows 0.8 to 1.5).
+/// A value is off by so many times as much (measured as encoded, the largest of each: glare 1.7 to 2.6, shadows 0.8 to
+/// 1.5; of light, glare of 15 % 3.3, where 2 % of the values are beyond 3 standard errors that hold this).
 const OFF_BY: f64 = 2.0;
 
 /// A photodiode's colour in each frame.

@@ -2,8 +2,9 @@
 //! change with time.
 //!
 //! In: the options, a time and an encoded colour. Out: that colour in the light of its place. Light is multiplied and
-//! glare added before a camera encodes, so the curve that the film is read with is undone for both. A gradient turns once in 40 s; level, colour and glare drift with rates of 0.02 to 0.2 Hz
-//! (assumed). Glare is a streak along the nail, a twentieth of the nail wide.
+//! glare added before a camera encodes, so the curve that the film is read with is undone for both. A gradient turns
+//! once in 40 s; level, colour and glare drift with rates of 0.02 to 0.2 Hz (assumed). Glare is a streak along the
+//! nail, a twentieth of the nail wide.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +13,7 @@ use rand::RngExt;
 use super::{Affine, NailVideoOptions};
 use crate::phantom::motion::wave::{Wave, random_wave};
 use crate::phantom::nail::{NailScene, numbers};
-use crate::video::{Curve, Lit};
+use crate::video::{Curve, Lit, Times};
 
 const KIND_LIGHT: u32 = 43;
 const DRIFT_HZ: f64 = 0.05;
@@ -22,6 +23,7 @@ const TURN_S: f64 = 40.0;
 #[derive(Debug, Clone)]
 pub(super) struct DriftingLight {
     curve: Curve,
+    times: Times,
     level: f64,
     colour: f64,
     gradient: f64,
@@ -42,8 +44,9 @@ const GLARE_REACH: [f64; 2] = [0.5, 0.3];
 const LEAST_GLARE: f64 = 1e-4;
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FrameLight {
+pub(super) struct FrameLight<'a> {
     curve: Curve,
+    times: &'a Times,
     /// In the picture's middle: red, green, blue; none where they are as they were.
     channels: Option<[Lit; 3]>,
     /// Change from the middle to the right border and to the lower one.
@@ -61,6 +64,7 @@ impl DriftingLight {
         let wave = |index: u32| random_wave(DRIFT_HZ, 0.4..4.0, options.seed, KIND_LIGHT, index);
         Self {
             curve: options.curve(),
+            times: Times::new(options.curve()),
             level: 0.01 * options.light_drift_percent,
             colour: 0.01 * options.colour_drift_percent,
             gradient: 0.01 * options.gradient_percent,
@@ -76,7 +80,7 @@ impl DriftingLight {
 
     /// At `t_s`, when the hand has come so far as `motion` says. Level and colour are those of the first frame but for
     /// what has changed since.
-    pub(super) fn at(&self, t_s: f64, motion: &Affine) -> FrameLight {
+    pub(super) fn at(&self, t_s: f64, motion: &Affine) -> FrameLight<'_> {
         let [level, colour, ..] = self.waves.map(|wave| 0.5 * (wave.at(t_s) - wave.at(0.0)));
         let flicker = 1.0 + self.flicker * (TAU * self.flicker_hz * t_s + self.phase).sin();
         let level = flicker * (1.0 + self.level * level);
@@ -85,6 +89,7 @@ impl DriftingLight {
         let channels = [level * (1.0 + colour), level, level * (1.0 - colour)];
         FrameLight {
             curve: self.curve,
+            times: &self.times,
             channels: (channels != [1.0; 3]).then(|| channels.map(|channel| self.curve.times(channel))),
             gradient: [self.gradient * cos, self.gradient * sin],
             half_px: self.half_px,
@@ -99,7 +104,7 @@ impl DriftingLight {
     }
 }
 
-impl FrameLight {
+impl FrameLight<'_> {
     /// An encoded colour in the light at a pixel.
     pub(super) fn on(&self, colour: [f32; 3], at: [f64; 2]) -> [f32; 3] {
         let mut lit = colour;
@@ -139,7 +144,7 @@ impl FrameLight {
             return self.channels;
         }
         let [right, down] = [(x + 0.5) / self.half_px[0] - 1.0, (y + 0.5) / self.half_px[1] - 1.0];
-        let here = self.curve.times((1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0));
+        let here = self.times.of((1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0));
         Some(self.channels.map_or([here; 3], |channels| channels.map(|channel| channel.and(here))))
     }
 }

@@ -9,10 +9,11 @@
 //! - `truth/frames.csv`: `frame,time_s`; `a,b,c,d,e,f`: what is at (x, y) in frame 0 is at (a x + b y + c, d x + e y +
 //!   f) in this one, at mid-exposure; `Fx_N,Fy_N,Fz_N,J2_deg`; `P1`..: the green light of the normalized nail over
 //!   each photodiode's disc, a fraction of full scale's, without noise, in the first light (no light that drifts,
-//!   nothing over the nail): that of the disc's mean as encoded, by the curve that `nailvideo` reads the film with; `P1_hidden`..: which share of the disc is covered or out of the picture;
-//!   `status`: `ok`, or `gone` where another nail or none of this one is in the picture; then the same discs' red and
-//!   blue (`P1_red`.., `P1_blue`..) and by what each channel's light is multiplied at the nail's middle
-//!   (`light_red,light_green,light_blue`). Of another nail no motion is known: its cells are empty;
+//!   nothing over the nail): that of the disc's mean as encoded, by the curve that `nailvideo` reads the film with;
+//!   `P1_hidden`..: which share of the disc is covered or out of the picture; `status`: `ok`, or `gone` where another
+//!   nail or none of this one is in the picture; then the same discs' red and blue (`P1_red`.., `P1_blue`..) and by
+//!   what each channel's light is multiplied at the nail's middle (`light_red,light_green,light_blue`). Of another nail
+//!   no motion is known: its cells are empty;
 //! - `truth/presses.csv`: `press,onset_s,release_s`: when the force begins to rise and to fall, and `peak_N`; without
 //!   `--protocol press` it has no rows;
 //! - `truth/normalized/<frame>.npy`, with `--normalized`: the exact normalized green in the first light, as of
