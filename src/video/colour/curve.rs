@@ -43,7 +43,7 @@ pub(crate) struct Lit {
     root: f64,
 }
 
-/// [`Curve::times`] by a table, for factors up to 2: a power for each pixel took a third of a phantom's time.
+/// [`Curve::times`] by a table, for factors up to 2: a power for each pixel took 7 % of a phantom's time.
 #[derive(Debug, Clone)]
 pub(crate) struct Times {
     curve: Curve,
