@@ -3,7 +3,7 @@
 //! In: the person's rows, in the order of time, and places. Out: the root mean square error of the linear model over
 //! the target's SD, mean over targets: each fifth of the rows is judged by the model of the other four. On the rows
 //! that models are fitted to more places are never worse: of six persons of 120 s, of 36 slow cells of which three say
-//! anything, all together had an error of 0.40 there and of 0.67 on another recording, three places 0.46 and 0.55.
+//! anything, all together had an error of 0.40 there and of 0.67 on another recording, the best eight 0.48 and 0.58.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 use ndarray::Array2;
@@ -121,31 +121,42 @@ impl Sums {
 
 #[cfg(test)]
 mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
     use super::*;
 
-    /// Slow readings, drawn by a fixed rule, of which the first alone says the target, with as much of its own.
-    fn rows(cells: usize) -> OwnRows {
-        let slow = |row: usize, k: usize| {
-            let phase = 1.7 * k as f64 + 0.3;
-            (row as f64 / (31.0 + 7.3 * k as f64) + phase).sin()
-        };
-        let x = Array2::from_shape_fn((600, cells), |(row, k)| slow(row, k));
-        let y = Array2::from_shape_fn((600, 1), |(row, _)| slow(row, 0) + slow(row, 40));
+    /// Readings that wander (correlation of neighbours 0.97), of which the first alone says the target, which has as
+    /// much of its own.
+    fn rows(cells: usize, seed: u64) -> OwnRows {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut wander = Array2::<f64>::zeros((600, cells + 1));
+        for (row, k) in (1..600).flat_map(|row| (0..=cells).map(move |k| (row, k))) {
+            let normal: f64 = StandardNormal.sample(&mut random);
+            wander[[row, k]] = 0.97 * wander[[row - 1, k]] + 0.243 * normal;
+        }
+        let x = Array2::from_shape_fn((600, cells), |(row, k)| wander[[row, k]]);
+        let y = Array2::from_shape_fn((600, 1), |(row, _)| wander[[row, 0]] + wander[[row, cells]]);
         OwnRows { x, y }
     }
 
     #[test]
     fn places_that_say_nothing_make_it_worse() {
-        let rows = rows(30);
-        let [one, all] = [rows.error(&[0], 0.0), rows.error(&(0..30).collect::<Vec<_>>(), 0.0)].map(Option::unwrap);
-        assert!((0.5..1.0).contains(&one) && all > 1.2 * one, "{one} {all}");
+        let all: Vec<usize> = (0..30).collect();
+        let mean = |places: &[usize], noise_sd: f64| {
+            (0..12).map(|seed| rows(30, seed).error(places, noise_sd).unwrap()).sum::<f64>() / 12.0
+        };
+        // In the rows that they are fitted to all have 0.36 to 0.48.
+        let [one, all] = [mean(&[0], 0.0), mean(&all, 0.0)];
+        assert!((0.6..1.0).contains(&one) && all > 1.05 * one, "{one} {all}");
         // Noise takes a place's word away.
-        assert!((rows.error(&[0], 1e6).unwrap() - 1.0).abs() < 0.1);
+        assert!((mean(&[0], 1e6) - 1.0).abs() < 0.2);
     }
 
     #[test]
     fn the_same_reading_twice_is_one_and_too_few_rows_are_none() {
-        let one = rows(1);
+        let one = rows(1, 0);
         let twice = OwnRows { x: Array2::from_shape_fn((600, 2), |(row, _)| one.x[[row, 0]]), y: one.y.clone() };
         let [once, twice] = [one.error(&[0], 0.0), twice.error(&[0, 1], 0.0)].map(Option::unwrap);
         assert!((once - twice).abs() < 1e-6, "{once} {twice}");
