@@ -39,10 +39,10 @@ pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
 pub use lines::stamps::TimeUnit;
 pub(crate) use lines::status::{Statuses, Unknown, Verdict, is_filmed, lacks_label, without_faults};
 pub use naming::columns::Columns;
-pub(crate) use naming::groups::{GROUPS, Groups, groups};
+pub(crate) use naming::groups::{Groups, groups};
 pub(crate) use naming::guess::is_force_in_another_unit;
 pub use naming::header::LogHeader;
-pub(crate) use naming::header::time_not_read;
+pub(crate) use naming::header::{GROUPS, time_not_read};
 pub use reading::{LitRows, LogReading, UnlitLoads};
 
 /// A column of a log.

@@ -126,7 +126,7 @@ impl LogReading {
     pub fn lit_rows(&self, path: &Path) -> Result<LitRows, LogError> {
         let log = Log::read(path, &self.columns)?;
         let mut samples = samples(&log, &self.ambient)?;
-        let groups = groups::of_log(path, &samples.time_s).unwrap_or_else(|why| {
+        let groups = groups::of_log(path, &log.time_s, &samples.time_s).unwrap_or_else(|why| {
             samples.warnings.push(why);
             Vec::new()
         });

@@ -5,16 +5,16 @@
 
 use std::path::Path;
 
-use crate::table::{Table, TableError, column_names};
-
-/// Columns that say where one recording ends and the next begins.
-pub(crate) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
+use super::header::{self, GROUPS};
+use crate::table::{Table, TableError};
 
 /// The first row of each stretch and its session, subject and trajectory.
 pub(crate) type Groups = Vec<(usize, [String; 3])>;
 
 /// Times that are read by two readers are the same to the step of 64-bit numbers at seconds since 1970.
 const SAME_S: f64 = 1e-6;
+/// Rows of a recording, on average, at least (assumed: a second of a slow log).
+const FEWEST_ROWS: usize = 10;
 
 /// The stretches of a table.
 pub(crate) fn groups(table: &Table) -> Result<Groups, TableError> {
@@ -31,32 +31,45 @@ pub(crate) fn groups(table: &Table) -> Result<Groups, TableError> {
     Ok(changes)
 }
 
-/// The stretches of a log's rows at `times_s`, by the time of the file's rows.
+/// The stretches of a log's lit rows at `times_s`; `all_s`: the times of all its rows.
 ///
 /// # Errors
 /// Why columns that the log has are not read.
-pub(in crate::log) fn of_log(path: &Path, times_s: &[f64]) -> Result<Groups, String> {
-    let names = column_names(path).unwrap_or_default();
+pub(in crate::log) fn of_log(path: &Path, all_s: &[f64], times_s: &[f64]) -> Result<Groups, String> {
+    let table = Table::read(path);
+    let names = match &table {
+        Ok(table) => table.names().to_vec(),
+        Err(_) => header::names(path),
+    };
     let own: Vec<&str> = GROUPS.into_iter().filter(|group| names.iter().any(|name| name == group)).collect();
     if own.is_empty() {
         return Ok(Groups::new());
     }
-    of_rows_at(path, times_s).ok_or_else(|| {
-        format!(
-            "`{}` is not read, as the rows' times don't say which row is whose: give each recording a file of its own, \
-             or times in seconds in a column `time_s` that go on from one to the next",
-            own.join("`, `")
+    let not_read = |why: &str| format!("`{}` is not read: {why}", own.join("`, `"));
+    let Ok(table) = table else { return Err(not_read("save the log as .csv with commas or as .parquet")) };
+    let of_all = groups(&table).map_err(|why| not_read(&why.to_string()))?;
+    if let [(_, only)] = &of_all[..] {
+        return Ok(vec![(0, only.clone())]);
+    }
+    if of_all.len() * FEWEST_ROWS > table.rows() {
+        return Err(not_read("it changes every few rows; is it the number of a row?"));
+    }
+    // Of a log all of whose rows are read each is where it is in the file.
+    let rows_s = if all_s.len() == table.rows() { Some(all_s.to_vec()) } else { table.values("time_s").ok() };
+    rows_s.and_then(|rows_s| at_times(&rows_s, &of_all, times_s)).ok_or_else(|| {
+        not_read(
+            "the rows' times don't say which row is whose; give each recording a file of its own, or times that go on \
+             from one to the next",
         )
     })
 }
 
-/// None where a time is no row's, or rows of several stretches have it.
-fn of_rows_at(path: &Path, times_s: &[f64]) -> Option<Groups> {
-    let table = Table::read(path).ok()?;
-    let groups = groups(&table).ok()?;
+/// The stretches of rows at `times_s`, of those of rows at `rows_s`; none where a time is no row's, or rows of several
+/// stretches have it.
+fn at_times(rows_s: &[f64], groups: &Groups, times_s: &[f64]) -> Option<Groups> {
     let stretch = |row: usize| groups.partition_point(|(first, _)| *first <= row).checked_sub(1);
-    let rows = table.values("time_s").ok()?.into_iter().enumerate();
-    let mut rows: Vec<(f64, Option<usize>)> = rows.map(|(row, time_s)| (time_s, stretch(row))).collect();
+    let mut rows: Vec<(f64, Option<usize>)> =
+        rows_s.iter().enumerate().map(|(row, time_s)| (*time_s, stretch(row))).collect();
     rows.retain(|(time_s, _)| time_s.is_finite());
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut changes = Groups::new();
@@ -101,9 +114,13 @@ mod tests {
     use crate::log::LogReading;
 
     fn lit(rows: &str) -> (Groups, Vec<String>) {
+        of_file("log.csv", &format!("time_s,led,P1,Fz_N,session,subject\n{rows}"))
+    }
+
+    fn of_file(name: &str, text: &str) -> (Groups, Vec<String>) {
         let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("log.csv");
-        std::fs::write(&path, format!("time_s,led,P1,Fz_N,session,subject\n{rows}")).unwrap();
+        let path = dir.path().join(name);
+        std::fs::write(&path, text).unwrap();
         let lit = LogReading::default().lit_rows(&path).unwrap();
         (lit.groups, lit.samples.warnings)
     }
@@ -119,6 +136,16 @@ mod tests {
         let group = |session: &str| [session.to_owned(), "anna".to_owned(), String::new()];
         assert_eq!(groups, [(0, group("1")), (10, group("2")), (20, group("3"))]);
         assert!(!warnings.iter().any(|warning| warning.contains("not read")), "{warnings:?}");
+        // Whatever its time is called; of one session, whatever it is.
+        let mut millis = "time_ms,led,P1,Fz_N,session,subject\n".to_owned();
+        (0..60).for_each(|k| millis += &format!("{},{},{},-1,{},anna\n", 10 * k, k % 2, 1 + k % 7, 1 + k / 20));
+        let (groups, warnings) = of_file("log.csv", &millis);
+        assert!(groups.len() == 3 && !warnings.iter().any(|one| one.contains("not read")), "{groups:?} {warnings:?}");
+        let tabs = format!("time_s,led,P1,Fz_N,session,subject\n{rows}").replace(',', "\t");
+        let (groups, warnings) = of_file("log.tsv", &tabs);
+        assert!(groups.is_empty() && warnings.iter().any(|one| one.contains("save the log as .csv")), "{warnings:?}");
+        let (groups, _) = lit(&rows.replace(",2,anna", ",1,anna").replace(",3,anna", ",1,anna"));
+        assert_eq!(groups, [(0, group("1"))]);
         // Two persons at one time: nobody's.
         let twice = rows.replace("0.59,1", "0.57,1").replace(",3,anna", ",3,ben");
         let (groups, warnings) = lit(&twice.replacen(",3,ben", ",3,anna", 19));

@@ -6,7 +6,6 @@ use std::path::Path;
 use crate::log::formats::text::{self, Layout};
 use crate::log::lines::rows::{choose, dated};
 use crate::log::naming::columns::{Choice, Columns};
-use crate::log::naming::groups::GROUPS;
 use crate::log::naming::guess::role_of;
 use crate::log::naming::role::Role;
 use crate::log::{Format, Log, LogError};
@@ -22,6 +21,9 @@ pub struct LogHeader {
     /// Forces.
     pub forces: usize,
 }
+
+/// Columns that say where one recording ends and the next begins.
+pub(crate) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
 
 /// As much of a file of text as holds its header.
 const HEAD: u64 = 1 << 16;
@@ -92,6 +94,11 @@ pub(crate) fn time_not_read(names: &[String]) -> Option<&str> {
     let is_time = |name: &&String| role_of(name) == Some(Role::Time);
     let other = || names.iter().find(is_time).map(String::as_str);
     if names.iter().any(|name| name == "time_s") { None } else { other() }
+}
+
+/// The names of the columns of a log that no table's reader takes; none where they are not known.
+pub(in crate::log) fn names(path: &Path) -> Vec<String> {
+    head(path).ok().and_then(|text| Some(Layout::find(&text).ok()?.names)).unwrap_or_default()
 }
 
 /// The first lines of a file of text; all of one that is packed or whose header is further down.
