@@ -209,10 +209,11 @@ fn light_that_drifts_and_glare_that_moves_are_no_press() {
         fs::remove_dir_all(dir.path("out")).expect("removed");
         (photodiodes.iter().all(|row| row["status"] == "ok"), report)
     };
-    for light in ["--light-drift 20 --colour-drift 10 --flicker 5", "--glare 30"] {
-        assert!(film(light).0, "{light}");
-    }
-    let (_, report) = film("--glare 80");
+    let drifting = "--light-drift 20 --colour-drift 10 --flicker 5";
+    assert!(film(drifting).0, "{drifting}");
+    // As light as 40 % of encoded colours, by which glare was given before: under 60 % of light the nail is lost.
+    let (is_followed, report) = film("--glare 30");
+    assert!(is_followed, "glare");
     assert!(report.contains("glare or a shadow that colours the light goes over P"), "{report}");
 }
 

@@ -132,7 +132,7 @@ pub struct NailVideoOptions {
     #[arg(long = "colour-drift", value_name = "PERCENT", default_value_t = 0.0)]
     pub colour_drift_percent: f64,
 
-    /// Glare moves over the nail, as light as so much of full white; what is below it does not count as hidden
+    /// Glare moves over the nail, as light as so much of full white's light; what is below it does not count as hidden
     #[arg(long = "glare", value_name = "PERCENT", default_value_t = 0.0)]
     pub glare_percent: f64,
     /// A rod covers part of the nail from this frame on, so many frames long; again for more
