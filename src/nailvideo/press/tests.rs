@@ -32,7 +32,8 @@ fn rows_in_light(time_s: &[f64], values: Vec<f64>, skin: &[f64], red: &[f64]) ->
 
 fn rows_with(time_s: &[f64], trace: Trace, skin: &[f64]) -> Vec<Row> {
     let traces = [trace];
-    rows(&Recording { time_s, traces: &traces, ends: &[], skin, whole: 100.0 })
+    // Traces are of ratios as encoded, which a press changes 1.85 times less than those of light.
+    rows(&Recording { time_s, traces: &traces, ends: &[], skin, whole: 100.0 / 1.85 })
 }
 
 /// By how much onset and t90 of releases are off, and whether their intervals hold the truth; of each seed's trace
