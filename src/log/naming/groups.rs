@@ -54,8 +54,10 @@ pub(in crate::log) fn of_log(path: &Path, all_s: &[f64], times_s: &[f64]) -> Res
     if of_all.len() * FEWEST_ROWS > table.rows() {
         return Err(not_read("it changes every few rows; is it the number of a row?"));
     }
-    // Of a log all of whose rows are read each is where it is in the file.
-    let rows_s = if all_s.len() == table.rows() { Some(all_s.to_vec()) } else { table.values("time_s").ok() };
+    let is_first = |time_s: &f64| times_s.first().is_some_and(|first_s| (time_s - first_s).abs() <= SAME_S);
+    let own_s = table.values("time_s").ok().filter(|own_s| own_s.iter().any(is_first));
+    // Where another column, unit or date says the time: of a log all of whose rows are read each is where it is there.
+    let rows_s = own_s.or_else(|| (all_s.len() == table.rows()).then(|| all_s.to_vec()));
     rows_s.and_then(|rows_s| at_times(&rows_s, &of_all, times_s)).ok_or_else(|| {
         not_read(
             "the rows' times don't say which row is whose; give each recording a file of its own, or times that go on \
