@@ -100,9 +100,9 @@ pub(crate) fn bids(
     let file = |ending: &str| root.join(names.folder()).join(format!("{}_{ending}", names.stem()));
     let sidecar = sidecar(&file("motion.json"), names, &times_s, &channels)?;
     let (motion, rows) = (file("motion.tsv"), channels.rows(posture, &times_s));
-    if input::read_text(&motion).is_ok_and(|standing| standing != rows) {
-        let what = "has other angles: is it another recording of this subject, session and task? Then say --run 2 (or \
-                    the next number); remove it where it is an older result of this one"
+    if input::read_text(&motion).is_ok_and(|standing| is_of_other_frames(&standing, &times_s)) {
+        let what = "is of other frames: is it another recording of this subject, session and task? Then say --run 2 \
+                    (or the next number); remove it where it is an older result of this one"
             .to_owned();
         return Err(ExportError::Unfit { path: motion, what });
     }
@@ -113,6 +113,18 @@ pub(crate) fn bids(
         places.write(path, text)?;
     }
     Ok(files.into_iter().map(|(path, _)| path).collect())
+}
+
+/// Whether a `motion.tsv` is of frames at other times, which may drift as clocks do: then it is another recording's.
+fn is_of_other_frames(standing: &str, times_s: &[f64]) -> bool {
+    let time = |line: &str| line.split('\t').next()?.parse().ok();
+    let own: Vec<f64> = standing.lines().map(|line| time(line).unwrap_or(f64::NAN)).collect();
+    let is_other = |(own_s, time_s): (&f64, &f64)| {
+        let [own_s, time_s] = [own_s - own[0], time_s - times_s[0]];
+        let off_s = (own_s - time_s).abs();
+        off_s.is_nan() || off_s > 1e-3 + 2e-3 * time_s
+    };
+    own.len() != times_s.len() || own.iter().zip(times_s).any(is_other)
 }
 
 /// Which columns there are after the time: of each joint, whether its errors are known.

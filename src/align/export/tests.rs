@@ -103,9 +103,8 @@ fn a_bids_dataset_is_begun_and_continued() {
     assert_eq!(second[0], "participants.tsv");
     assert_eq!(second[3], "sub-02/ses-a/motion/sub-02_ses-a_task-bend_tracksys-camera_motion.tsv");
     assert_eq!(text("participants.tsv"), "participant_id\tage\nsub-01\t31\nsub-02\tn/a\n");
-    // A second recording of these names replaces none.
-    let mut other = posture();
-    other.angles_deg[0][0] = 11.0;
+    // Angles of the same frames are written again, those of a second recording replace none.
+    let other = Posture { time_s: vec![0.0, 0.05, 0.1, 0.15], ..posture() };
     let why = write_run("01", None, &other, None).unwrap_err().to_string();
     assert!(why.contains("_motion.tsv") && why.contains("--run 2"), "{why}");
     assert!(text(&all[5]).contains("\t10.00000\t"));
