@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use super::header::{self, GROUPS};
-use crate::table::{Table, TableError};
+use crate::table::{Table, TableError, column_names};
 
 /// The first row of each stretch and its session, subject and trajectory.
 pub(crate) type Groups = Vec<(usize, [String; 3])>;
@@ -36,17 +36,13 @@ pub(crate) fn groups(table: &Table) -> Result<Groups, TableError> {
 /// # Errors
 /// Why columns that the log has are not read.
 pub(in crate::log) fn of_log(path: &Path, all_s: &[f64], times_s: &[f64]) -> Result<Groups, String> {
-    let table = Table::read(path);
-    let names = match &table {
-        Ok(table) => table.names().to_vec(),
-        Err(_) => header::names(path),
-    };
+    let names = column_names(path).unwrap_or_else(|_| header::names(path));
     let own: Vec<&str> = GROUPS.into_iter().filter(|group| names.iter().any(|name| name == group)).collect();
     if own.is_empty() {
         return Ok(Groups::new());
     }
     let not_read = |why: &str| format!("`{}` is not read: {why}", own.join("`, `"));
-    let Ok(table) = table else { return Err(not_read("save the log as .csv with commas or as .parquet")) };
+    let Ok(table) = Table::read(path) else { return Err(not_read("save the log as .csv with commas or as .parquet")) };
     let of_all = groups(&table).map_err(|why| not_read(&why.to_string()))?;
     if let [(_, only)] = &of_all[..] {
         return Ok(vec![(0, only.clone())]);
