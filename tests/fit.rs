@@ -390,12 +390,13 @@ fn loads_that_are_late_or_never_at_0_are_warned_of() {
     let dir = Dir::new();
     ramps(&dir);
     let rows = dir.table("r.csv");
-    let warned = |late_rows: usize, offset_pa: f64| {
+    // Volts a pascal of light that goes with the load.
+    let with_light = |late_rows: usize, offset_pa: f64, light: f64| {
         let mut text = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
         for (k, row) in rows.iter().enumerate() {
             let load = |name: &str| number(&rows[k.saturating_sub(late_rows)], name) + offset_pa;
             let noise = 1e-4 * (((k * 7919 + 31) * (k + 17)) % 2003) as f64 / 1001.0;
-            let [first, second] = ["VP1", "VP2"].map(|name| number(row, name) + noise);
+            let [first, second] = ["VP1", "VP2"].map(|name| number(row, name) + noise + light * load("pf1_Pa"));
             text += &format!("{},{},{},{first},{second}\n", row["time_s"], load("pf1_Pa"), load("pf2_Pa"));
         }
         dir.write("moved.csv", text);
@@ -403,8 +404,17 @@ fn loads_that_are_late_or_never_at_0_are_warned_of() {
         let delay_s = answer.json()["recordings"][0]["delay_s"][0].number();
         (delay_s, answer.stderr)
     };
+    let warned = |late_rows: usize, offset_pa: f64| with_light(late_rows, offset_pa, 0.0);
     let (delay_s, said) = warned(0, 0.0);
     assert!(delay_s.abs() < 0.01 && !said.contains("clock") && !said.contains("rests at"), "{delay_s} {said}");
+    assert!(!said.contains("goes with"), "{said}");
+    let swing = |name: &str| {
+        let ends =
+            rows.iter().map(|row| number(row, name)).fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)]);
+        ends[1] - ends[0]
+    };
+    let (_, said) = with_light(0, 0.0, 0.05 * swing("VP1") / swing("pf1_Pa"));
+    assert!(said.contains("goes with the load itself, and that the model has not"), "{said}");
     let (delay_s, said) = warned(4, 0.0);
     assert!((-0.12..-0.04).contains(&delay_s), "{delay_s}");
     assert!(said.contains("ms before what the loads would make of them: are both on one clock?"), "{said}");

@@ -27,8 +27,8 @@ pub use equilibrium::{
     equilibria, load_curve, rest,
 };
 pub use fit::{
-    Bound, Bounds, Calibrated, Calibration, Combination, Course, Delay, Estimate, FitFault, FitOptions, FitResult,
-    FitStatistics, Free, Group, Recording, Rival, Stop, Trace, fit, noise, time_constant,
+    Beside, BesidePart, Bound, Bounds, Calibrated, Calibration, Combination, Course, Delay, Estimate, FitFault,
+    FitOptions, FitResult, FitStatistics, Free, Group, Recording, Rival, Stop, Trace, fit, noise, time_constant,
 };
 pub use live::{Live, LiveFault, LiveStatistics};
 pub use load::{Inputs, Load, LoadFault, Loads, Segment};

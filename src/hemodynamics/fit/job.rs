@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use lunula_hemodynamics::{
-    Calibrated, Calibration, Delay, Estimate, FitOptions as Settings, FitResult, Free, Parameters, Recording, Symbol,
-    fit as search,
+    Beside, BesidePart, Calibrated, Calibration, Delay, Estimate, FitOptions as Settings, FitResult, Free, Parameters,
+    Recording, Symbol, fit as search,
 };
 
 use super::recording::{ReadRecording, photodiodes, read, signs};
@@ -209,6 +209,7 @@ pub fn fit(
         values: result.values,
         freedom: result.freedom,
         not_identifiable: result.undetermined.clone(),
+        beside: result.beside,
         rivals: result.rivals.clone(),
         points: result.statistics.points,
         points_refused: result.statistics.refused,
@@ -273,6 +274,9 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], of_parts: Vec<Stri
     }
     warnings.extend(signs::of_scalings(result, recordings));
     warnings.extend(recordings.iter().zip(&result.delays).filter_map(|(read, delay)| delayed((*delay)?, &read.name)));
+    if !result.delays.iter().flatten().any(Delay::is_clear) {
+        warnings.extend(result.beside.and_then(part_beside));
+    }
     let files = recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()));
     warnings.extend(copies(files.collect()));
     for read in recordings {
@@ -321,6 +325,23 @@ fn delayed(delay: Delay, name: &str) -> Option<String> {
              a column another's?)",
             1e3 * delay.by_s.abs(),
             1e3 * delay.standard_error_s
+        )
+    })
+}
+
+/// What to say of voltages that hold more than the model.
+fn part_beside(beside: Beside) -> Option<String> {
+    let (with, why) = match beside.part {
+        BesidePart::Load => ("the load itself", "does the light change as the nail bends under the sensor"),
+        BesidePart::Square => ("the square of their signal", "are the photodiodes or their amplifiers not linear"),
+    };
+    beside.is_clear().then(|| {
+        format!(
+            "the photodiodes hold a part of about {:.0} % of their range that goes with {with}, and that the model \
+             has not ({:.0} standard deviations of the noise): {why}, or is a parameter that is held another \
+             finger's? The free ones take it up, and neither their standard errors nor their intervals include it",
+            100.0 * beside.share,
+            beside.sds
         )
     })
 }

@@ -48,7 +48,7 @@ impl Job for FitOptions {
                 Part::pictures(""),
             ],
         )
-        .revision(9)
+        .revision(10)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

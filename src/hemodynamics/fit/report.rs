@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use lunula_hemodynamics::noise::Slow;
-use lunula_hemodynamics::{Combination, Group, Rival, Stop};
+use lunula_hemodynamics::{Beside, Combination, Group, Rival, Stop};
 use serde::Serialize;
 
 use super::alone::Alone;
@@ -94,6 +94,9 @@ pub struct FitFigures {
     pub freedom: usize,
     /// What the recordings don't determine.
     pub not_identifiable: Vec<Combination>,
+    /// What the voltages may hold beside the model: part, its share of a photodiode's range, and how many standard
+    /// deviations of the noise it is; none where nothing is free.
+    pub beside: Option<Beside>,
     /// Other minima, found from other starts, that the recordings can't distinguish from this one.
     pub rivals: Vec<Rival>,
     /// Points in the space of parameters that were tried.

@@ -27,6 +27,7 @@ mod result;
 mod time_constant;
 
 pub use crate::fit::algebra::levenberg::Stop;
+pub use certainty::beside::{Beside, Part as BesidePart};
 pub use certainty::delay::Delay;
 pub use fault::FitFault;
 pub use free::{Bounds, Free};

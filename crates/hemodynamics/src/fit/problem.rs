@@ -232,6 +232,17 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// The mean of both loads at a channel's samples, Pa.
+    pub(super) fn loads_pa(&self, channel: &Channel) -> Vec<f64> {
+        let of = |sample: usize| match &self.recordings[channel.recording].course {
+            Course::Transient { times_s, proximal, distal, .. } => {
+                0.5 * (proximal.at(times_s[sample]) + distal.at(times_s[sample]))
+            }
+            Course::Static { proximal_pa, distal_pa } => 0.5 * (proximal_pa[sample] + distal_pa[sample]),
+        };
+        channel.samples.iter().map(|&sample| of(sample)).collect()
+    }
+
     /// The slow noise of each photodiode of each recording.
     pub(super) fn noises(&self) -> Vec<Vec<Option<Slow>>> {
         let mut noises: Vec<_> = self.recordings.iter().map(|one| vec![None; one.photodiodes.len()]).collect();

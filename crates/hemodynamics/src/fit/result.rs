@@ -1,6 +1,7 @@
 //! What a fit gives.
 
 use crate::fit::algebra::levenberg::Stop;
+use crate::fit::certainty::beside::Beside;
 use crate::fit::certainty::delay::Delay;
 use crate::fit::noise::Slow;
 use crate::parameters::{Parameters, Symbol};
@@ -47,6 +48,8 @@ pub struct FitResult {
     /// Of each recording by how much its photodiodes come after their loads; `None` in equilibrium, or where nothing
     /// shows it.
     pub delays: Vec<Option<Delay>>,
+    /// What the voltages may hold beside the model; `None` where nothing is free, or nothing shows it.
+    pub beside: Option<Beside>,
     /// Other minima, found from other starts, that these data don't separate from the best one, the nearest first.
     /// Standard errors know nothing of them.
     pub rivals: Vec<Rival>,

@@ -1,5 +1,6 @@
 //! Fits to generated recordings whose truth is known.
 
+mod beside;
 mod clock;
 mod coverage;
 mod faults;

@@ -5,6 +5,7 @@
 //! or where their noise leaves its logarithm uncertain by more than ln 10: the order of magnitude within which the
 //! parameters are known beforehand.
 
+pub(in crate::fit) mod beside;
 pub(in crate::fit) mod delay;
 pub(in crate::fit) mod noise;
 pub(in crate::fit) mod profile;
@@ -143,6 +144,7 @@ pub(super) fn certainty(problem: &Problem, found: &Minimum<Evaluation>) -> Certa
         noises: problem.noises(),
         singular_values_v: svd.values.iter().map(|value| value / (rows as f64).sqrt()).collect(),
         undetermined,
+        beside: beside::beside(problem, best, &inside, variance.sqrt()),
         delays: delay::delays(problem, best, &inside, variance.sqrt()),
         rivals: vec![],
         stop: found.stop,
