@@ -144,6 +144,63 @@ fn times_are_the_containers_at_a_variable_rate() {
     assert!(intervals.iter().any(|i| (i - intervals[0]).abs() > 1e-3), "the rate varies");
 }
 
+/// Angles with the marker file as it is, and with that of a person who leaves these lines out.
+fn with_and_without(dir: &Dir, key: &str) -> [Rows; 2] {
+    posture(dir, &["--no-figures"]).expect(0);
+    let as_it_is = dir.table("joints.csv");
+    let file = dir.text("scene/markers.toml");
+    assert!(file.contains(key), "{file}");
+    let left: Vec<&str> = file.lines().filter(|line| !line.starts_with(key)).collect();
+    dir.write("scene/markers.toml", left.join("\n"));
+    posture(dir, &["--no-figures"]).expect(0);
+    [as_it_is, dir.table("joints.csv")]
+}
+
+#[test]
+fn a_rolling_shutter_is_undone_also_where_the_picture_is_turned() {
+    for rotate in ["0", "90", "180"] {
+        let dir = scene_of("1", &["--trajectory", "random", "--readout", "25", "--rotate", rotate]);
+        let truth = dir.table("scene/truth/joints.csv");
+        let [undone, left] = with_and_without(&dir, "readout_ms");
+        assert_eq!((undone[1]["status"].starts_with("lost"), undone[2]["status"].as_str()), (true, "ok"));
+        for (joint, bound) in CLEAN_RMS_DEG {
+            let [(undone, count), (left, _)] = [&undone, &left].map(|found| rms(found, &truth, joint));
+            assert_eq!(count, truth.len() - 2, "{joint}: the first two frames have none before");
+            assert!(undone <= bound && left > 2.0 * undone, "{rotate} {joint}: {undone}, left {left} degrees RMS");
+        }
+    }
+}
+
+#[test]
+fn a_clock_in_lower_rows_and_on_a_late_display_counts_as_it_does() {
+    let clock =
+        ["--vfr", "--clock", "mm:ss.tt", "--clock-roi", "20,300,150,40", "--readout", "20", "--clock-delay", "45"];
+    let dir = scene(&clock);
+    let truth = dir.table("scene/truth/joints.csv");
+    let worst = |found: &Rows| {
+        let off = found
+            .iter()
+            .zip(&truth)
+            .map(|(row, exact)| known(row, "clock_s").unwrap() - known(exact, "clock_s").unwrap());
+        off.fold(0.0, |worst: f64, off| if off.abs() > worst.abs() { off } else { worst })
+    };
+    let [known_delay, left] = with_and_without(&dir, "delay_ms");
+    assert!(worst(&known_delay).abs() <= 0.005, "{}", worst(&known_delay));
+    assert!((worst(&left) + 0.045).abs() <= 0.005, "a display's delay is not seen: {}", worst(&left));
+    // Between two numbers: the middle, and both ends in the interval.
+    let file = dir.text("scene/markers.toml").replace("[clock]", "[clock]\ndelay_ms = [30, 60]");
+    dir.write("scene/markers.toml", file);
+    let [between, left] = with_and_without(&dir, "readout_ms");
+    // The clock's middle is in row 319.5 of 0 to 359.
+    assert!((worst(&left) - 0.0178).abs() <= 0.005, "later than the first row: {}", worst(&left));
+    for (row, exact) in between.iter().zip(&truth) {
+        let [low, exact, high] = [known(row, "clock_low_s"), known(exact, "clock_s"), known(row, "clock_high_s")];
+        assert!(low < exact && exact < high && high.unwrap() - low.unwrap() >= 0.03, "{low:?} {exact:?} {high:?}");
+        let sd_s = known(row, "clock_sd_s").unwrap();
+        assert!((0.0086..0.0105).contains(&sd_s), "{sd_s}: 30 ms of a uniform distribution");
+    }
+}
+
 #[test]
 fn parquet_holds_what_csv_holds() {
     let dir = scene(&["--hide", "hand_prox@10+5"]);

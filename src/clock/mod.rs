@@ -34,6 +34,8 @@ pub struct Clock {
     pub format: ClockFormat,
     /// How often its screen changes a second, infinite where it changes at once; none: not known.
     pub refresh_hz: Option<f64>,
+    /// The least and the longest time from the program to the display's light, beside its refreshes, seconds.
+    pub delay_s: [f64; 2],
 }
 
 /// Where the clock is on the shown picture.

@@ -16,8 +16,8 @@
 //! lie within a standard error, as of a uniform distribution. A screen of exactly 60 refreshes shows every tenth
 //! equally late: then its delay can't be separated from the offset, nor slow drift from none, by any number of frames.
 //!
-//! What is not determined: a lag that the whole display adds (a screen's processing, slow pixels), and where in the
-//! exposure the frame's time lies.
+//! What is not determined: a lag that the whole display adds (a screen's processing, slow pixels; [`ClockFit::delayed`]
+//! takes one that was measured), and where in the exposure the frame's time lies.
 
 mod consensus;
 mod diagnose;
@@ -91,6 +91,7 @@ pub struct ClockFit {
     pub screen_delay_most_s: f64,
     /// What whoever uses the fit should doubt.
     pub doubt: Option<String>,
+    delay_s: [f64; 2],
     place: Place,
     corners: Vec<Point>,
 }
@@ -115,7 +116,21 @@ impl ClockFit {
     /// The least and the greatest that the clock may count at the video's time `time_s`, seconds.
     #[must_use]
     pub fn bounds_s(&self, time_s: f64) -> [f64; 2] {
-        ends(self.corners.iter().map(|corner| self.place.clock_s(corner, time_s)))
+        let shown_s = ends(self.corners.iter().map(|corner| self.place.clock_s(corner, time_s)));
+        [shown_s[0] + self.delay_s[0], shown_s[1] + self.delay_s[1]]
+    }
+
+    /// The same of a display that shows everything at least and at most so many seconds late: the clock counts more
+    /// than it shows, by the middle of the two, and what is between them is in interval and standard error (of a
+    /// uniform distribution).
+    #[must_use]
+    pub fn delayed(mut self, delay_s: [f64; 2]) -> Self {
+        let [least_s, most_s] = delay_s;
+        self.delay_s = delay_s;
+        self.timebase.at_reference_s += 0.5 * (least_s + most_s);
+        self.timebase.at_reference_sd_s = self.timebase.at_reference_sd_s.hypot((most_s - least_s) / 12f64.sqrt());
+        self.offset_interval_s = self.bounds_s(0.0);
+        self
     }
 }
 
@@ -222,6 +237,7 @@ pub fn fit(
         screen_delay_s: screen.estimate_s,
         screen_delay_most_s: screen.most_s,
         doubt: screen.doubt.or_else(|| refused_at_an_end(&agreed)),
+        delay_s: [0.0; 2],
         place,
         corners,
     })

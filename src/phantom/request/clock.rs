@@ -21,6 +21,9 @@ pub(super) struct ClockArgs {
     /// Refreshes of the clock's screen a second; the marker file gets them [default: it changes at once]
     #[arg(long, value_name = "HZ", requires = "clock")]
     clock_refresh: Option<f64>,
+    /// How late the display shows what its program counts, beside its refreshes; the marker file gets it
+    #[arg(long, value_name = "MS", requires = "clock")]
+    clock_delay: Option<f64>,
     /// The clock's digits
     #[arg(long, value_enum, requires = "clock")]
     clock_font: Option<ClockFont>,
@@ -53,6 +56,7 @@ impl ClockArgs {
             offset_s: self.clock_offset.unwrap_or(usual.offset_s),
             drift_ppm: self.clock_drift_ppm.unwrap_or(usual.drift_ppm),
             refresh_hz: self.clock_refresh,
+            delay_s: 1e-3 * self.clock_delay.unwrap_or_default(),
             font: self.clock_font.unwrap_or(ClockFont::Mono),
             light_digits: !self.clock_dark,
             roi_px: self.clock_roi,

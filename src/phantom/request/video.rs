@@ -88,6 +88,10 @@ pub struct VideoRequest {
     /// Exposure as a share of the frame interval
     #[arg(long, value_name = "SHARE")]
     blur: Option<f64>,
+    /// A rolling shutter takes the stored picture's last row so long after its first; the marker file says it. The
+    /// truth is of the first row's moment
+    #[arg(long, value_name = "MS")]
+    readout: Option<f64>,
     /// The light's brightness goes up and down by so many per cent
     #[arg(long, value_name = "PERCENT")]
     flicker: Option<f64>,
@@ -167,6 +171,7 @@ impl VideoRequest {
         given(&mut options.jitter, self.vfr, 1.0);
         given(&mut options.sway_px, self.sway, 1.0);
         given(&mut options.blur, self.blur, 1.0);
+        given(&mut options.readout_s, self.readout, 1e-3);
         given(&mut options.flicker, self.flicker, 0.01);
         given(&mut options.flicker_hz, self.flicker_hz, 1.0);
         given(&mut options.gradient, self.gradient, 0.01);

@@ -13,6 +13,8 @@ mod digits;
 
 use serde::Serialize;
 
+use crate::phantom::scene::place::is_default;
+
 /// The clock's digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
@@ -52,6 +54,9 @@ pub struct Clock {
     pub drift_ppm: f64,
     /// Refreshes of the screen a second; none: it changes at once.
     pub refresh_hz: Option<f64>,
+    /// How long the display takes from the program to its light, beside its refreshes, seconds.
+    #[serde(skip_serializing_if = "is_default")]
+    pub delay_s: f64,
     /// How its digits are drawn.
     pub font: ClockFont,
     /// Light digits on a dark panel; dark ones on a light panel otherwise.
@@ -71,6 +76,7 @@ impl Default for Clock {
             offset_s: 60.0,
             drift_ppm: 0.0,
             refresh_hz: None,
+            delay_s: 0.0,
             font: ClockFont::Mono,
             light_digits: true,
             roi_px: None,
@@ -119,6 +125,7 @@ impl Clock {
     /// digits for.
     #[must_use]
     pub fn shown(&self, t_s: f64) -> (String, f64) {
+        let t_s = t_s - self.delay_s;
         let t_s = self.stop_s.map_or(t_s, |stop_s| t_s.min(stop_s));
         let drawn_s = self.refresh_hz.map_or(t_s, |hz| ((t_s * hz - FIRST_REFRESH).floor() + FIRST_REFRESH) / hz);
         let jump_s = self.jump.filter(|jump| drawn_s >= jump.at_s).map_or(0.0, |jump| jump.by_s);

@@ -23,6 +23,8 @@ impl VideoOptions {
         faults.range("--vfr", self.jitter, 0.0, 0.9, " of an interval");
         faults.range("--sway", self.sway_px, 0.0, 0.25 * self.width as f64, " px");
         faults.range("--blur", self.blur, 0.0, 1.0, " of the frame interval");
+        let interval_ms = 1e3 * (1.0 - self.jitter) / self.fps;
+        faults.range("--readout", 1e3 * self.readout_s, 0.0, interval_ms, " ms, the least interval between frames");
         faults.range("--flicker", 100.0 * self.flicker, 0.0, 90.0, " %");
         faults.range("--flicker-hz", self.flicker_hz, 0.0, 1e5, " Hz");
         faults.range("--gradient", 100.0 * self.gradient, 0.0, 90.0, " %");
@@ -67,6 +69,7 @@ impl VideoOptions {
         faults.need(!self.joints.is_empty() || known.is_empty(), || "--joints: name at least one".to_owned());
         if let Some(clock) = &self.clock {
             faults.0.extend(clock.fault().map(|fault| format!("--clock {}: {fault}", clock.format)));
+            faults.range("--clock-delay", 1e3 * clock.delay_s, 0.0, 1000.0, " ms");
             if let Some(hz) = clock.refresh_hz {
                 faults.need(hz.is_finite() && hz > 0.0, || format!("--clock-refresh {hz}: choose more than 0 Hz"));
             }

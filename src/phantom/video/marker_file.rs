@@ -2,13 +2,22 @@
 
 use super::Scene;
 
+/// Seconds in milliseconds, without what rounding leaves.
+fn in_ms(seconds: f64) -> f64 {
+    (1e9 * seconds).round() / 1e6
+}
+
 impl Scene {
     /// The marker file of this scene.
     #[must_use]
     pub fn markers_toml(&self) -> String {
         let options = &self.options;
         let finger = &options.finger;
-        let mut text = format!("flexion = \"{}\"\n\n[markers]\n", finger.flexion.name());
+        let mut text = format!("flexion = \"{}\"\n", finger.flexion.name());
+        if options.readout_s > 0.0 {
+            text += &format!("readout_ms = {:?}\n", in_ms(options.readout_s));
+        }
+        text += "\n[markers]\n";
         for marker in &self.markers {
             text += &format!("{} = \"#{:06x}\"\n", marker.name, marker.colour);
         }
@@ -41,6 +50,9 @@ impl Scene {
             text += &format!("\n[clock]\nroi = {roi}\nformat = \"{}\"\n", clock.format);
             // TOML knows infinity: a screen that changes at once.
             text += &format!("refresh_hz = {:?}\n", clock.refresh_hz.unwrap_or(f64::INFINITY));
+            if clock.delay_s > 0.0 {
+                text += &format!("delay_ms = {:?}\n", in_ms(clock.delay_s));
+            }
         }
         if let Some(mapping) = &self.mapping {
             let mut distortion = options.lens.as_ref().map_or(Vec::new(), |lens| lens.distortion.clone());

@@ -153,6 +153,9 @@ pub struct VideoOptions {
     pub desk: u32,
     /// Exposure as a share of the mean frame interval.
     pub blur: f64,
+    /// A rolling shutter: how long after the stored picture's first row its last is taken, seconds.
+    #[serde(skip_serializing_if = "is_default")]
+    pub readout_s: f64,
     /// Half the range of the light's brightness, as a share.
     pub flicker: f64,
     /// How often the light flickers a second; frames sample it, so 100 Hz is seen as 10 Hz at 30 frames a second.
@@ -260,6 +263,7 @@ impl VideoOptions {
             distractors: 0,
             desk: 0x8a9299,
             blur: 0.0,
+            readout_s: 0.0,
             flicker: 0.0,
             flicker_hz: 100.0,
             gradient: 0.0,

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::VideoOptions;
 use crate::phantom::motion::finger::Skin;
 use crate::phantom::scene::lens::Mapping;
+use crate::phantom::screen::Clock;
 use crate::phantom::video::draw::blot::Blot;
 use crate::phantom::video::draw::limb::Limb;
 use crate::phantom::video::draw::objects::{Distractor, Stick};
@@ -58,7 +59,7 @@ pub struct MarkerTruth {
 /// What is true of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameTruth {
-    /// Its presentation time, which is its mid-exposure.
+    /// Its presentation time, which is its mid-exposure; of a rolling shutter, that of the first row.
     pub time_s: f64,
     /// What the clock counts then.
     pub clock_s: Option<f64>,
@@ -121,6 +122,16 @@ impl Scene {
     #[must_use]
     pub fn time_s(&self, frame: usize) -> f64 {
         self.ticks[frame] as f64 / f64::from(TICKS_PER_S)
+    }
+
+    /// How long after the frame's time the middle of the clock is taken, seconds.
+    pub(super) fn clock_late_s(&self, clock: &Clock) -> f64 {
+        let options = &self.options;
+        let format = options.format();
+        let [x, y, width, height] = options.clock_roi_px(clock).map(|side| side as f64);
+        let middle = [x + 0.5 * (width - 1.0), y + 0.5 * (height - 1.0)];
+        let [_, row] = options.turn.stored_from_shown(middle, (format.width, format.height));
+        options.readout_s * row / (format.height - 1) as f64
     }
 
     /// Whether the clock's screen is covered in a frame.

@@ -176,10 +176,12 @@ fn write_truth(scene: &Scene, folder: &Path) -> Result<(), Error> {
     let [clock_s, shown_s] = ["clock_s", "shown_s"].map(Column::number);
     let more = [clock_s, Column::text("shown"), shown_s, Column::integer("changing"), Column::text("status")];
     let mut shows = start(folder, "clock.csv", &[&first[..], &more].concat())?;
+    let late_s = scene.clock_late_s(clock);
     let half_s = 0.5 * scene.options().blur / scene.options().fps;
     for (at, (frame, truth)) in rows().enumerate() {
-        let (shown, shown_s) = clock.shown(truth.time_s);
-        let changing = clock.shown(truth.time_s - half_s).0 != clock.shown(truth.time_s + half_s).0;
+        let taken_s = truth.time_s + late_s;
+        let (shown, shown_s) = clock.shown(taken_s);
+        let changing = clock.shown(taken_s - half_s).0 != clock.shown(taken_s + half_s).0;
         let status = match clock {
             _ if scene.clock_hidden(at) => "hidden",
             _ if clock.stop_s.is_some_and(|stop_s| truth.time_s >= stop_s) => "stopped",

@@ -7,5 +7,6 @@ mod lengths;
 pub(super) mod lens;
 mod metric;
 mod plane;
+pub(super) mod readout;
 pub(super) mod smooth;
 pub(super) mod view;

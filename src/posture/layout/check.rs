@@ -11,7 +11,10 @@ use crate::flexion::Flexion;
 use crate::toml_file::{Entry, Fault, Findings, entries, number};
 use crate::words::instead;
 
-const TABLES: [&str; 9] = ["flexion", "shape", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
+const TABLES: [&str; 10] =
+    ["flexion", "shape", "readout_ms", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
+/// No camera takes longer for the rows of a picture, milliseconds (assumed; 5 to 35 are usual of phones and webcams).
+const LONGEST_READOUT_MS: f64 = 100.0;
 /// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.
 const DISTORTIONS: [usize; 5] = [0, 4, 5, 8, 12];
 
@@ -25,6 +28,7 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<Fault>> {
     let mut notes = Vec::new();
     let flexion = flexion(&mut findings, &top, &mut notes, path);
     let shape = shape(&mut findings, &top);
+    let readout_s = readout_s(&mut findings, &top);
 
     let marker_entries = findings.table(&top, "markers").unwrap_or_default();
     let markers = markers(&mut findings, &top, &marker_entries);
@@ -71,6 +75,7 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<Fault>> {
         start,
         clock,
         camera,
+        readout_s,
         warnings,
         notes,
     })
@@ -273,10 +278,25 @@ fn start(findings: &mut Findings<'_>, top: &[Entry<'_>], markers: &[&str]) -> Ve
     start
 }
 
+fn readout_s(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> f64 {
+    let Some(entry) = top.iter().find(|e| e.key == "readout_ms") else { return 0.0 };
+    let readout_ms = number(entry.value).filter(|ms| (0.0..=LONGEST_READOUT_MS).contains(ms));
+    if readout_ms.is_none() {
+        findings.fault(
+            entry.at,
+            format!(
+                "`readout_ms` is how long the camera takes from a picture's first row to its last: milliseconds, \
+                 from 0 (all at once) to {LONGEST_READOUT_MS}"
+            ),
+        );
+    }
+    1e-3 * readout_ms.unwrap_or_default()
+}
+
 fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
     let table = findings.table(top, "clock")?;
     let at = top.iter().find(|e| e.key == "clock").map_or(0, |e| e.key_at);
-    findings.unknown_keys(&table, &["roi", "format", "refresh_hz"], "key of [clock]");
+    findings.unknown_keys(&table, &["roi", "format", "refresh_hz", "delay_ms"], "key of [clock]");
     let roi = match table.iter().find(|e| e.key == "roi") {
         None => {
             findings.fault(at, "[clock] lacks `roi`; write roi = [x, y, width, height] or roi = \"auto\"");
@@ -312,7 +332,30 @@ fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
         }
         hertz
     });
-    Some(Clock { roi: roi?, format: format?, refresh_hz })
+    let delay_s = table.iter().find(|e| e.key == "delay_ms").map_or(Some([0.0; 2]), |entry| delay_s(findings, entry));
+    Some(Clock { roi: roi?, format: format?, refresh_hz, delay_s: delay_s? })
+}
+
+/// A display is no later than this, milliseconds (assumed: televisions that work on their pictures take 0.1 to 0.2 s).
+const LONGEST_DELAY_MS: f64 = 1000.0;
+
+/// The least and the longest delay, of one number or two.
+fn delay_s(findings: &mut Findings<'_>, entry: &Entry<'_>) -> Option<[f64; 2]> {
+    let ends = match entry.value.as_array() {
+        None => number(entry.value).map(|ms| [ms; 2]),
+        Some(_) => findings.numbers(*entry, "delay_ms = [least, most]")?.try_into().ok(),
+    };
+    let ends = ends.filter(|[least, most]| 0.0 <= *least && least <= most && *most <= LONGEST_DELAY_MS);
+    if ends.is_none() {
+        findings.fault(
+            entry.at,
+            format!(
+                "`delay_ms` is how late the display shows what the program counts: milliseconds from 0 to \
+                 {LONGEST_DELAY_MS}, or two numbers that it lies between, as [20, 40]"
+            ),
+        );
+    }
+    ends.map(|ends| ends.map(|ms| 1e-3 * ms))
 }
 
 fn roi(findings: &mut Findings<'_>, entry: Entry<'_>) -> Option<ClockRoi> {

@@ -128,6 +128,8 @@ pub struct Layout {
     pub clock: Option<Clock>,
     /// The lens.
     pub camera: Option<Camera>,
+    /// How long after a picture's first row its last is taken, seconds; 0 where all are taken at once.
+    pub readout_s: f64,
     /// What is hardly meant so, each with its place.
     pub warnings: Vec<String>,
     /// What is no fault but worth saying, each with its place.

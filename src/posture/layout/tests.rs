@@ -253,6 +253,27 @@ fn a_clocks_screen_changes_so_often_or_at_once() {
 }
 
 #[test]
+fn a_display_is_so_late_or_between_two_numbers() {
+    let of = |delay: &str| parse(&format!("[markers]\na = '#fff'\n[clock]\nroi = 'auto'\nformat = 'ss'\n{delay}\n"));
+    let ms = |delay: &str| of(delay).unwrap().clock.unwrap().delay_s.map(|delay_s| (1e3 * delay_s).round());
+    assert_eq!([ms(""), ms("delay_ms = 25"), ms("delay_ms = [20, 45.0]")], [[0.0; 2], [25.0; 2], [20.0, 45.0]]);
+    for bad in ["-1", "nan", "inf", "1001", "'25'", "[20]", "[45, 20]", "[1, 2, 3]"] {
+        let fault = of(&format!("delay_ms = {bad}")).unwrap_err().to_string();
+        assert!(fault.contains(":6: `delay_ms` is how late"), "{bad}: {fault}");
+    }
+}
+
+#[test]
+fn a_shutter_rolls_for_so_long() {
+    let of = |readout: &str| parse(&format!("{readout}\n[markers]\na = '#fff'\n"));
+    assert_eq!((of("").unwrap().readout_s, of("readout_ms = 16").unwrap().readout_s), (0.0, 0.016));
+    for bad in ["-1", "nan", "101", "'16'", "[16]"] {
+        let fault = of(&format!("readout_ms = {bad}")).unwrap_err().to_string();
+        assert!(fault.contains(":1: `readout_ms` is how long"), "{bad}: {fault}");
+    }
+}
+
+#[test]
 fn markers_are_discs_or_blots_where_the_file_says_so() {
     let markers = "[markers]\na = \"#2b4b10\"\n";
     assert_eq!(parse(markers).unwrap().shape, None);

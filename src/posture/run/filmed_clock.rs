@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::clock::{
     Clock, ClockFit, ClockReader, ClockRoi, Doubt, FEWEST, Misfit, ReaderEffort, Reading, ScreenDelay, fit,
 };
+use crate::posture::angle::readout::Rows;
 use crate::video::{Frame, Info};
 
 /// What the clock in the picture said.
@@ -161,9 +162,14 @@ impl FilmedClock {
         })
     }
 
-    /// Fits the clock over the whole video.
-    pub(in crate::posture) fn finish(mut self) -> ClockOutcome {
+    /// Fits the clock over the whole video; `rows`: when a rolling shutter takes it.
+    pub(in crate::posture) fn finish(mut self, rows: Option<Rows>, info: &Info) -> ClockOutcome {
         self.take_earlier();
+        if let (Some(rows), Some([x, y, width, height])) = (rows, self.reader.region()) {
+            let shown_px = [x + 0.5 * (width - 1.0), y + 0.5 * (height - 1.0)];
+            let [_, row] = info.turn.stored_from_shown(shown_px, (info.format.width, info.format.height));
+            self.times_s.iter_mut().for_each(|time_s| *time_s += rows.late_s(row));
+        }
         let unfit = self.unfit();
         let format = &self.clock.format;
         let resolution_s = format.resolution_s();
@@ -173,7 +179,8 @@ impl FilmedClock {
             *frames_abstained.entry(doubt).or_default() += 1;
         }
         let fit = || fit(&self.times_s, &shown_s, resolution_s, &format.wraps_s(), self.clock.refresh_hz);
-        let fit = unfit.map_or_else(|| fit().map_err(|fault| fault.to_string()), Err);
+        let delayed = |fit: ClockFit| fit.delayed(self.clock.delay_s);
+        let fit = unfit.map_or_else(|| fit().map(delayed).map_err(|fault| fault.to_string()), Err);
         let read = shown_s.iter().flatten().count() as u64;
         let refused = fit.as_ref().map_or(read, |fit| fit.refused as u64);
         let report = ClockReport {
@@ -211,7 +218,7 @@ mod tests {
     fn outcome(shown: &str, offset_s: f64, roi: ClockRoi, format: &str, frames: u64) -> ClockOutcome {
         let layout = Format { width: 320, height: 80, subsampling: None, depth: 8 };
         let screen = Screen { format: shown.to_owned(), offset_s, ..Screen::default() };
-        let clock = Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None };
+        let clock = Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None, delay_s: [0.0; 2] };
         let mut filmed = FilmedClock::new(&clock, &Info::plain(layout), 1).unwrap();
         for index in 0..frames {
             let time_s = index as f64 / 30.0;
@@ -222,7 +229,7 @@ mod tests {
             }
             filmed.look(index, time_s, Some(&picture.frame(index, time_s)));
         }
-        filmed.finish()
+        filmed.finish(None, &Info::plain(layout))
     }
 
     const ROI: ClockRoi = ClockRoi::Box([20.0, 22.0, 280.0, 36.0]);

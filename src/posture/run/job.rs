@@ -8,6 +8,7 @@ use std::path::Path;
 
 use crate::job::{Report, Watch};
 use crate::posture::angle::joints::Angles;
+use crate::posture::angle::readout::{Readout, Rolling, Rows};
 use crate::posture::angle::view::View;
 use crate::posture::error::PostureError;
 use crate::posture::layout::{Layout, MarkerShape};
@@ -43,9 +44,12 @@ pub fn run(
     let (survey, info) = look_first(path, layout, options, &stages, watch)?;
     let mut video = Video::open(path, options.threads)?;
     let clock = layout.clock.as_ref().filter(|_| options.reads_clock());
+    let rows = Rows::new(layout.readout_s, info.format.height);
     let clock = clock.map(|clock| FilmedClock::new(clock, &info, options.clock_every)).transpose();
     let mut clock = clock.map_err(|why| PostureError::Clock { path: path.to_owned(), why })?;
     let mut tracker = Tracker::new(layout, &survey, &info, options.method);
+    let mut readout = rows.map(Readout::new);
+    let mut rolling = Rolling::new(layout, &info);
     let mut angles = Angles::new(layout, &info);
     let mut results = Results::start(path, layout, &info, options, outputs)?;
     let mut span = Span::default();
@@ -60,7 +64,12 @@ pub fn run(
             Some(frame) => stages.time("track", || tracker.step(frame)),
             None => tracker.skip(),
         };
-        let joints = stages.time("angles", || angles.step(sights));
+        let joints = stages.time("angles", || {
+            let moved = readout.as_mut().map(|readout| readout.step(time_s, sights));
+            let sights = moved.as_deref().unwrap_or(sights);
+            rolling.add(time_s, sights);
+            angles.step(sights)
+        });
         if let Some(clock) = &mut clock {
             stages.time("clock", || clock.look(index, time_s, frame));
         }
@@ -72,7 +81,7 @@ pub fn run(
         span.add(time_s);
         (watch.tick)(index + 1, info.declared_frames);
     }
-    let clock = clock.map(|clock| stages.time("clock", || clock.finish()));
+    let clock = clock.map(|clock| stages.time("clock", || clock.finish(rows, &info)));
     let unsmoothed = stages.time("smooth", || results.smooth());
     results.write_held(clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()))?;
     let pictures = stages.time("figures", || results.draw_pictures())?;
@@ -86,8 +95,10 @@ pub fn run(
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
     warnings.extend(layout.warnings.iter().chain(&survey.doubts).cloned());
     warnings.extend(angles.doubts());
+    warnings.extend(rolling.doubt());
     warnings.extend(unsmoothed);
     warnings.extend(clock_doubt);
+    warnings.extend(span.slow_readout(layout.readout_s));
     warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());
     warnings.extend(late(layout, &survey, &results.markers));
@@ -203,9 +214,14 @@ fn look_first(
     Ok((survey, info))
 }
 
+/// A read-out time is longer than the interval between frames beyond this share of it: 33.4 ms at 30 frames a second
+/// are not (assumed).
+const SLOW_READOUT: f64 = 1.02;
+
 /// From when to when, and how evenly.
 #[derive(Default)]
 struct Span {
+    steps: u64,
     last_s: Option<f64>,
     interval_s: Option<[f64; 2]>,
 }
@@ -214,10 +230,24 @@ impl Span {
     fn add(&mut self, time_s: f64) {
         if let Some(last) = self.last_s {
             let step = time_s - last;
+            self.steps += 1;
             let [least, most] = self.interval_s.unwrap_or([step, step]);
             self.interval_s = Some([least.min(step), most.max(step)]);
         }
         self.last_s = Some(time_s);
+    }
+
+    /// That a read-out time can't be this camera's, if so: it takes no frame before it has read the last one.
+    fn slow_readout(&self, readout_s: f64) -> Option<String> {
+        let interval_s = self.last_s? / self.steps.max(1) as f64;
+        (self.steps > 0 && readout_s > SLOW_READOUT * interval_s).then(|| {
+            format!(
+                "readout_ms = {:.1} of the marker file is longer than the {:.1} ms from frame to frame, which no \
+                 camera takes; measure it again",
+                1e3 * readout_s,
+                1e3 * interval_s
+            )
+        })
     }
 }
 

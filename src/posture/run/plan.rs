@@ -70,6 +70,15 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
             known.layout.is_none_or(has_plane) && known.distorted != Some(false),
             said(known.layout.map(has_plane), "[camera.plane], of the centres", "no [camera.plane]"),
         ),
+        Step::new(
+            "rolling shutter",
+            known.layout.is_none_or(|layout| layout.readout_s > 0.0),
+            match known.layout {
+                Some(layout) if layout.readout_s > 0.0 => "readout_ms, of the centres and the clock".to_owned(),
+                Some(_) => "no readout_ms".to_owned(),
+                None => "as the marker file says".to_owned(),
+            },
+        ),
         Step::new("clock", options.reads_clock() && known.clock != Some(false), clock(known, options)),
         asked("smoothing", options.smooth, "--smooth"),
         asked("table of markers", outputs.tracks.is_some(), "--tracks"),

@@ -19,7 +19,7 @@ struct Tally {
 }
 
 fn clock(roi: ClockRoi, format: &str) -> Clock {
-    Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None }
+    Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None, delay_s: [0.0; 2] }
 }
 
 /// Reads frames by the format that the clock is written in; those in `hidden` show no clock.

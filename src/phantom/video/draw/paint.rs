@@ -58,9 +58,10 @@ pub(in crate::phantom::video) struct Exposure<'a> {
 }
 
 impl<'a> Exposure<'a> {
-    pub(in crate::phantom::video) fn new(scene: &'a Scene, frame: usize) -> Self {
+    /// Rows of a frame that are taken `late_s` after its first.
+    pub(in crate::phantom::video) fn new(scene: &'a Scene, frame: usize, late_s: f64) -> Self {
         let options = &scene.options;
-        let time_s = scene.time_s(frame);
+        let time_s = scene.time_s(frame) + late_s;
         let exposure_s = options.blur / options.fps;
         let middle = scene.moment(time_s);
         let ends = [scene.moment(time_s - 0.5 * exposure_s), scene.moment(time_s + 0.5 * exposure_s)];
@@ -114,7 +115,7 @@ impl<'a> Exposure<'a> {
             below: below.collect(),
             above: markers.chain(sticks).collect(),
             brightness: 1.0 + options.flicker * (TAU * options.flicker_hz * time_s + 0.8).sin(),
-            screen: Screen::new(scene, frame, exposure_s),
+            screen: Screen::new(scene, frame, time_s, exposure_s),
         }
     }
 

@@ -22,10 +22,10 @@ impl Screen {
     /// Moments of the exposure at which the screen is looked at.
     const LOOKS: usize = 16;
 
-    pub(in crate::phantom::video) fn new(scene: &Scene, frame: usize, exposure_s: f64) -> Option<Self> {
+    /// The screen in an exposure of `exposure_s` about `time_s`.
+    pub(in crate::phantom::video) fn new(scene: &Scene, frame: usize, time_s: f64, exposure_s: f64) -> Option<Self> {
         let clock = scene.options.clock.as_ref()?;
         let roi = scene.options.clock_roi_px(clock);
-        let time_s = scene.time_s(frame);
         let at = |look: usize| time_s + exposure_s * ((look as f64 + 0.5) / Self::LOOKS as f64 - 0.5);
         let texts = grouped((0..Self::LOOKS).map(|look| (clock.shown(at(look)).0, look)));
         let mut lit = vec![0.0; roi[2] * roi[3]];
