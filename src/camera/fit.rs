@@ -175,6 +175,14 @@ impl Fit {
         std::array::from_fn(|k| self.covariance[(k, k)].max(0.0).sqrt())
     }
 
+    /// By which share fx is more than fy, and its standard error.
+    pub(super) fn wider(&self) -> [f64; 2] {
+        let [fx, fy] = self.lens.focal_px;
+        let [xx, xy, yy] = [(0, 0), (0, 1), (1, 1)].map(|at| self.covariance[at]);
+        let variance = xx / (fx * fx) - 2.0 * xy / (fx * fy) + yy / (fy * fy);
+        [fx / fy - 1.0, variance.max(0.0).sqrt()]
+    }
+
     /// Whether any coefficient of distortion was free.
     pub(super) fn measures_distortion(&self) -> bool {
         self.sd()[4..].iter().any(|sd| *sd > 0.0)

@@ -26,6 +26,10 @@ const LARGE_RMS_PX: f64 = 1.5;
 /// of rendered boards that are bent by 1 mm or printed 1 to 3 % longer one way, of a zoom that changes by 2 %, of
 /// stabilised views; 0.29 or more of boards 2 % longer with corners to 0.1 px.
 const TOGETHER: f64 = 0.25;
+/// A camera's pixels are as wide as high to within this share (assumed), and seen to be others from so many standard
+/// errors on.
+const SQUARE: f64 = 0.003;
+const SQUARE_SDS: f64 = 5.0;
 /// A view whose residuals are so many times the others' is named.
 const ODD_TIMES: f64 = 3.0;
 /// Columns and rows of the cells in which corners are counted, and the share of cells under which it is warned.
@@ -191,6 +195,17 @@ pub(super) fn warnings(fit: &Fit, views: &[View], covered: f64, board: BoardSize
             "what is left of neighbouring corners goes together (correlation {together:.2}, of noise about 0), so that \
              standard errors are too small: is the board bent, or printed longer one way (measure both sides), or did \
              zoom, focus or a stabiliser move between views?"
+        ));
+    }
+    let [wider, sd] = fit.wider();
+    if wider.abs() > SQUARE.max(SQUARE_SDS * sd) {
+        let [by_width, by_height] = if wider > 0.0 { ["larger", "shorter"] } else { ["smaller", "longer"] };
+        warnings.push(format!(
+            "fx is {:.2} % {by_width} than fy (standard error {:.2}), and nearly all cameras have square pixels: is \
+             the board {by_height} from row to row than from column to column by as much (measure both sides of the \
+             print), or were the pictures stretched?",
+            100.0 * wider.abs(),
+            100.0 * sd
         ));
     }
     let places = places(views);

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::board::BoardSize;
 use super::fit::{Fit, OF_LENS, fit};
+use super::judge::{View, warnings};
 use crate::phantom::board::{BoardOptions, Scene};
 use crate::trial::normals;
 use crate::vision::{Corners, Intrinsics, undistorted};
@@ -182,6 +183,24 @@ fn standard_errors_are_opencvs_with_twice_the_points() {
         let ratio = theirs / own;
         eprintln!("{k}: {ratio}, expected {}", divisor.sqrt());
         assert!((ratio / divisor.sqrt() - 1.0).abs() <= 1e-3, "{k}: {ratio}");
+    }
+}
+
+/// A board that is a little longer one way passes for a camera of oblong pixels, which there hardly are.
+#[test]
+fn a_board_that_is_longer_one_way_is_warned_of_by_the_pixels() {
+    let said = |longer: f64, seed: u64| {
+        let views = corners(&BoardOptions { fy: Some(TRUTH[0]), ..options(seed, 12) }, NOISE_PX);
+        let points: Vec<[f64; 3]> = BOARD.points_mm(20.0).iter().map(|[x, y, z]| [x / longer, *y, *z]).collect();
+        let fit = fit(&points, &views, SIZE, 5).unwrap().expect("a lens");
+        let views: Vec<View> = views.into_iter().map(|corners| View { name: "v".to_owned(), corners }).collect();
+        warnings(&fit, &views, 1.0, BOARD).into_iter().filter(|said| said.contains("square pixels")).collect::<Vec<_>>()
+    };
+    for seed in 0..10 {
+        assert_eq!(said(1.0, seed), [""; 0], "{seed}");
+        let [wider, taller] = [1.01, 0.99].map(|longer| said(longer, seed).concat());
+        assert!(wider.contains("larger than fy") && wider.contains("shorter from row to row"), "{seed}: {wider}");
+        assert!(taller.contains("smaller than fy") && taller.contains("longer from row to row"), "{seed}: {taller}");
     }
 }
 
