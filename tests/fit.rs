@@ -386,17 +386,54 @@ fn loads_of_the_wrong_sign_are_warned_of() {
 }
 
 #[test]
+fn light_that_goes_with_the_load_is_warned_of() {
+    let dir = Dir::new();
+    let press = |t: f64, [on, off, pa]: [f64; 3]| 0.5 * pa * (((t - on) / 0.12).tanh() - ((t - off) / 0.12).tanh());
+    let presses = [[1.0, 3.0, 4000.0], [4.5, 6.0, 2500.0], [7.5, 10.0, 5500.0], [11.5, 13.0, 3500.0]];
+    let mut loads = "time_s,pf1_Pa,pf2_Pa\n".to_owned();
+    for k in 0..=800 {
+        let t = 0.02 * f64::from(k);
+        let pa = presses.iter().map(|&one| press(t, one)).sum::<f64>().max(0.0);
+        loads += &format!("{t:.2},{pa:.6},{pa:.6}\n");
+    }
+    dir.write("loads.csv", loads);
+    run(&dir, "simulate", "--loads loads.csv --until 16 --every 0.02 --with-loads --out r.csv --no-figures").expect(0);
+    let rows = dir.table("r.csv");
+    let swings = ["VP1", "VP2"].map(|name| {
+        let ends = |[a, b]: [f64; 2], row| [number(row, name).min(a), number(row, name).max(b)];
+        let [least, most] = rows.iter().fold([f64::MAX, f64::MIN], ends);
+        (name, most - least)
+    });
+    let said = |light: f64| {
+        let mut text = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+        for (k, row) in rows.iter().enumerate() {
+            let pa = number(row, "pf1_Pa");
+            let noise = 0.002 * ((((k * 7919 + 31) * (k + 17)) % 2003) as f64 / 1001.0 - 1.0);
+            let [first, second] = swings.map(|(name, swing)| number(row, name) + swing * (light * pa / 5500.0 + noise));
+            text += &format!("{},{pa},{pa},{first},{second}\n", row["time_s"]);
+        }
+        dir.write("light.csv", text);
+        let answer = run(&dir, "fit", "light.csv --free k_C,b_C --out f.json --json --no-figures").expect(0);
+        (answer.json()["beside"]["share"].number(), answer.stderr)
+    };
+    let (share, stderr) = said(0.03);
+    assert!(stderr.contains("goes with the load itself, and that the model has not"), "{stderr}");
+    assert!((0.02..0.045).contains(&share), "{share}");
+    let (_, stderr) = said(0.0);
+    assert!(!stderr.contains("goes with"), "{stderr}");
+}
+
+#[test]
 fn loads_that_are_late_or_never_at_0_are_warned_of() {
     let dir = Dir::new();
     ramps(&dir);
     let rows = dir.table("r.csv");
-    // Volts a pascal of light that goes with the load.
-    let with_light = |late_rows: usize, offset_pa: f64, light: f64| {
+    let warned = |late_rows: usize, offset_pa: f64| {
         let mut text = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
         for (k, row) in rows.iter().enumerate() {
             let load = |name: &str| number(&rows[k.saturating_sub(late_rows)], name) + offset_pa;
             let noise = 1e-4 * (((k * 7919 + 31) * (k + 17)) % 2003) as f64 / 1001.0;
-            let [first, second] = ["VP1", "VP2"].map(|name| number(row, name) + noise + light * load("pf1_Pa"));
+            let [first, second] = ["VP1", "VP2"].map(|name| number(row, name) + noise);
             text += &format!("{},{},{},{first},{second}\n", row["time_s"], load("pf1_Pa"), load("pf2_Pa"));
         }
         dir.write("moved.csv", text);
@@ -404,17 +441,8 @@ fn loads_that_are_late_or_never_at_0_are_warned_of() {
         let delay_s = answer.json()["recordings"][0]["delay_s"][0].number();
         (delay_s, answer.stderr)
     };
-    let warned = |late_rows: usize, offset_pa: f64| with_light(late_rows, offset_pa, 0.0);
     let (delay_s, said) = warned(0, 0.0);
     assert!(delay_s.abs() < 0.01 && !said.contains("clock") && !said.contains("rests at"), "{delay_s} {said}");
-    assert!(!said.contains("goes with"), "{said}");
-    let swing = |name: &str| {
-        let ends =
-            rows.iter().map(|row| number(row, name)).fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)]);
-        ends[1] - ends[0]
-    };
-    let (_, said) = with_light(0, 0.0, 0.05 * swing("VP1") / swing("pf1_Pa"));
-    assert!(said.contains("goes with the load itself, and that the model has not"), "{said}");
     let (delay_s, said) = warned(4, 0.0);
     assert!((-0.12..-0.04).contains(&delay_s), "{delay_s}");
     assert!(said.contains("ms before what the loads would make of them: are both on one clock?"), "{said}");

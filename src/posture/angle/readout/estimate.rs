@@ -276,7 +276,7 @@ mod tests {
     fn a_read_out_time_that_does_not_fit_is_doubted() {
         // The sights are as they were seen: all of it is left.
         let doubt = filmed(0.010, 0.0, "readout_ms = 16").doubt().expect("it is doubted");
-        assert!(doubt.contains("readout_ms = 16 ") && doubt.contains("about 26 "), "{doubt}");
+        assert!(doubt.contains("readout_ms = 16 ") && doubt.contains("about 25 "), "{doubt}");
     }
 
     #[test]

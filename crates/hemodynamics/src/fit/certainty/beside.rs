@@ -18,6 +18,9 @@ use crate::fit::problem::{Evaluation, Problem};
 /// Of a column's norm, what is left of it when parameters do the same.
 const DEPENDENT: f64 = 1e-6;
 
+/// Less of a photodiode's range is rounding of a recording without noise, or of no consequence (assumed).
+const LEAST_SHARE: f64 = 0.003;
+
 /// What voltages may hold beside the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -44,7 +47,7 @@ impl Beside {
     /// most 3.2 standard deviations.
     #[must_use]
     pub fn is_clear(&self) -> bool {
-        self.sds > 4.0
+        self.sds > 4.0 && self.share > LEAST_SHARE
     }
 }
 
