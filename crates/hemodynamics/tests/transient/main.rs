@@ -3,7 +3,6 @@
 mod closing;
 mod extremes;
 mod live;
-mod memory;
 mod order;
 mod random;
 mod reference;

@@ -244,15 +244,4 @@ mod tests {
         let all = cross_validate(&constant, shuffled, Nearest::fit, Nearest::predict).unwrap();
         assert_eq!(all.flattery.unwrap().ratio, [None, None], "0 / 0 is no ratio");
     }
-
-    #[test]
-    fn any_number_of_threads_gives_the_same() {
-        let data = recordings(&ALL);
-        let run = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let all = pool.install(|| cross_validate(&data, By::Session, Nearest::fit, Nearest::predict)).unwrap();
-            (serde_json::to_string(&all).unwrap(), all.predicted)
-        };
-        assert_eq!(run(1), run(3));
-    }
 }

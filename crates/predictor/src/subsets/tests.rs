@@ -8,7 +8,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
-use crate::{LeastSquaresOptions, fit_linear, score};
 
 /// Largest relative gap of an RMSE to that of a direct fit (QR of all rows); measured 1.2e-15.
 const DIRECT: f64 = 2e-14;
@@ -122,23 +121,6 @@ proptest! {
         let subsets = every_subset(&data, &data).unwrap();
         let ranks = [0b0111, 0b1011, 0b1100].map(|mask| subsets.all[mask - 1].rank);
         prop_assert_eq!(ranks, [2, 3, 2]);
-    }
-}
-
-#[test]
-fn all_photodiodes_are_the_linear_model_as_scored() {
-    let (train, validate) = (made(300, 8, 3, 1), made(200, 8, 3, 2));
-    let (model, _) = fit_linear(&train, &LeastSquaresOptions::default()).unwrap();
-    let subsets = every_subset(&train, &validate).unwrap();
-    let errors = subsets.all[254].errors.as_ref().unwrap();
-    for (data, rmse) in [(&train, &errors.train_rmse), (&validate, &errors.validate_rmse)] {
-        let mut predicted = Array2::zeros(data.y().dim());
-        for (x, mut out) in data.x().rows().into_iter().zip(predicted.rows_mut()) {
-            model.predict_row(x.as_slice().unwrap(), out.as_slice_mut().unwrap());
-        }
-        let scores = score(data.y().view(), predicted.view(), data.targets());
-        let scored: Vec<f64> = scores.targets.iter().map(|target| target.rmse).collect();
-        assert!(gap(rmse, &scored) <= DIRECT);
     }
 }
 
@@ -294,14 +276,4 @@ fn what_has_no_subsets() {
     assert_eq!(every_subset(&made(0, 2, 1, 1), &data), Err(SubsetFault::Empty("training rows")));
     let dark = made(10, 0, 1, 1);
     assert_eq!(every_subset(&dark, &dark), Err(SubsetFault::Empty("photodiodes")));
-}
-
-#[test]
-fn any_number_of_threads_gives_the_same() {
-    let (train, validate) = (made(100, 8, 3, 1), made(80, 8, 3, 2));
-    let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        serde_json::to_string(&pool.install(|| every_subset(&train, &validate)).unwrap()).unwrap()
-    };
-    assert_eq!(run(1), run(4));
 }

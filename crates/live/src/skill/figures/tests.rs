@@ -21,48 +21,6 @@ fn presses(rate_hz: f64, seconds: f64, of: &[(f64, f64, f64)]) -> Force {
     Force { force_n: time_s.iter().map(|&time_s| at(time_s)).collect(), time_s, lifted: Vec::new() }
 }
 
-/// Time in contact and impulse of such a press, exact.
-fn exact(held_s: f64, peak_n: f64) -> [f64; 2] {
-    let (up_s, down_s) = (0.1 * (1.0 - 0.2 / peak_n), 0.2 * (1.0 - 0.1 / peak_n));
-    [up_s + held_s + down_s, 0.5 * (peak_n + 0.2) * up_s + peak_n * held_s + 0.5 * (peak_n + 0.1) * down_s]
-}
-
-#[test]
-fn presses_are_exact_where_the_rows_meet_their_corners() {
-    let force = presses(100.0, 5.0, &[(0.5, 0.4, 2.0), (2.0, 0.3, 1.0), (3.5, 0.2, 4.0)]);
-    let (figures, found) = Figures::of(&force, &THRESHOLDS);
-    let all = [(0.4, 2.0), (0.3, 1.0), (0.2, 4.0)].map(|(held_s, peak_n)| exact(held_s, peak_n));
-    let [contact_s, impulse_ns] = [0, 1].map(|k| all.iter().map(|one| one[k]).sum::<f64>());
-    let near = |found: Option<f64>, exact: f64| (found.unwrap() - exact).abs() <= 1e-9;
-    assert_eq!((figures.presses, figures.cut, found.len()), (Some(3), 0, 3));
-    assert!(near(figures.contact_s, contact_s) && near(figures.impulse_ns, impulse_ns), "{figures:?}");
-    assert!(near(figures.peak_n, 4.0) && near(figures.mean_n, impulse_ns / contact_s));
-    assert!(near(figures.peak_rise_n_per_s, 40.0) && near(figures.first_s, 0.51));
-    assert!(figures.smoothness.unwrap() < -1.0);
-    assert!((figures.known_s - 5.0).abs() <= 1e-9 && figures.unknown_s <= 1e-9);
-}
-
-#[test]
-fn a_gap_takes_its_own_time_and_nothing_else() {
-    let mut force = presses(100.0, 5.0, &[(0.5, 3.0, 2.0)]);
-    // 1.00 to 1.50 s are lost, and one row at 2.00 s is not known.
-    force.force_n[200] = f64::NAN;
-    let kept: Vec<usize> = (0..force.time_s.len()).filter(|row| !(101..150).contains(row)).collect();
-    let force = Force {
-        time_s: kept.iter().map(|&row| force.time_s[row]).collect(),
-        force_n: kept.iter().map(|&row| force.force_n[row]).collect(),
-        lifted: Vec::new(),
-    };
-    let (figures, found) = Figures::of(&force, &THRESHOLDS);
-    let [contact_s, impulse_ns] = exact(3.0, 2.0);
-    assert_eq!((figures.presses, figures.cut, found.len()), (Some(1), 3, 3));
-    assert!((figures.contact_s.unwrap() - (contact_s - 0.52)).abs() <= 1e-9);
-    assert!((figures.impulse_ns.unwrap() - (impulse_ns - 0.52 * 2.0)).abs() <= 1e-9);
-    assert!((figures.unknown_s - 0.52).abs() <= 1e-9 && (figures.known_s - 4.48).abs() <= 1e-9);
-    // No press is seen whole.
-    assert_eq!(figures.smoothness, None);
-}
-
 #[test]
 fn a_finger_that_never_touches_has_no_force_and_one_that_is_not_known_has_nothing() {
     let (idle, _) = Figures::of(&presses(50.0, 2.0, &[(0.5, 0.2, 0.15)]), &THRESHOLDS);
