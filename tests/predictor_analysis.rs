@@ -179,9 +179,6 @@ fn every_subset_is_compared_and_the_best_of_each_size_reported() {
         names,
         ["best-of-size.png", "best-of-size.svg", "run.json", "subsets.csv", "without-one.png", "without-one.svg"]
     );
-    let again = ["--out", "again", "--threads", "1", "-q"];
-    dir.lunula(&[&prune[..], &again].concat()).expect(0);
-    dir.same_results("pr", "again");
     dir.lunula(&prune).expect(0).prints("15 subsets").prints("all, then all but one");
 }
 

@@ -1,7 +1,7 @@
 //! What the predictor commands say of tables and model files that are not as they should be: which file, where in it,
 //! what to do.
 
-use crate::util::sensor::{Recording, near, numbers, slopes};
+use crate::util::sensor::{Recording, near};
 use crate::util::{Dir, Json};
 use serde_json::{Value, json};
 
@@ -16,25 +16,6 @@ fn sensor() -> Dir {
 fn refused(dir: &Dir, words: &[&str]) {
     dir.train("a.csv", "force", "m.json", &[]).refuses(words);
     assert!(!dir.path("m.json").exists());
-}
-
-#[test]
-fn a_cell_that_is_not_finite_is_reported_with_its_place_or_left_out_and_counted() {
-    for (row, column, text, shown) in [(3, "P4", "nan", "NaN"), (0, "Fz_N", "\"2,5\"", "2,5"), (59, "time_s", "?", "?")]
-    {
-        let dir = sensor();
-        dir.recording("a.csv", &Recording::of(0..60).cell(row, column, text));
-        refused(&dir, &[&format!("a.csv:{}: column `{column}`: `{shown}", row + 2), "--drop-invalid"]);
-        let report = dir.train("a.csv", "force", "m.json", &["--drop-invalid", "--json"]).expect(0).json();
-        assert_eq!(
-            report["data"][0],
-            json!({"path": "a.csv", "rows": 60, "used": 59, "empty": 0, "invalid": 1, "faults": 0, "notes": []})
-        );
-        near(&numbers(&dir.parsed("m.json")["model"]["jacobian"][0]), &slopes(0), 1e-14);
-        // What is not read may be anything.
-        dir.recording("a.csv", &Recording::of(0..60).cell(3, "J2_deg", text).cell(9, "P1", ""));
-        dir.train("a.csv", "force", "m.json", &["--inputs", "P2,P3"]).expect(0);
-    }
 }
 
 #[test]

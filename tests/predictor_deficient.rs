@@ -1,7 +1,7 @@
 //! `lunula train` on rows that do not determine the model: which photodiodes are at fault is reported, and what was
 //! asked for is done.
 
-use crate::util::sensor::{Recording, near, numbers, slope, slopes};
+use crate::util::sensor::{Recording, near, numbers, slope};
 use crate::util::{Dir, Json};
 use serde_json::Value;
 
@@ -57,53 +57,6 @@ fn a_dead_photodiode_is_named_and_gets_nothing() {
     dir.train("a.csv", "force", "m.json", &["--deficient", "drop"])
         .expect(0)
         .says("a.csv: P3 is 2.1 V in all 120 rows: dead or not connected");
-    // A network gives it no weight, and says so.
-    let network = ["--model", "network", "--hidden", "2", "--restarts", "1", "--epochs", "3"];
-    dir.train("a.csv", "force", "m.json", &network).expect(0).says("P3 is 2.1 in all training rows: its weights are 0");
-    for node in dir.parsed("m.json")["model"]["hidden_weights"].list() {
-        assert_eq!(numbers(node)[2], 0.0);
-    }
-}
-
-#[test]
-fn a_force_that_is_cut_off_is_reported() {
-    let whole = Recording::of(0..120);
-    let mut fz_n = whole.numbers("Fz_N");
-    fz_n.sort_by(f64::total_cmp);
-    let least = fz_n[40];
-    let dir = dir_with(&whole.map("Fz_N", move |_, v| v.max(least)));
-    let answer = dir.train("a.csv", "force", "m.json", &[]).expect(0);
-    answer.says("a.csv: Fz_N stays at exactly ").says("cut off at the end of a range");
-    let dir = dir_with(&Recording::of(0..120));
-    dir.train("a.csv", "force", "m.json", &[]).expect(0).never_says("cut off");
-}
-
-#[test]
-fn a_force_that_rests_elsewhere_than_at_0_is_reported() {
-    let dir =
-        dir_with(&Recording::of(0..400).map("Fz_N", |k, v| if k % 100 < 40 { 0.12 + 1e-3 * v } else { v.min(-1.0) }));
-    let said = dir.train("a.csv", "force", "m.json", &[]).expect(0);
-    said.says("a.csv: Fz_N rests at 0.1").says("take so much away from all of it");
-    let dir = dir_with(&Recording::of(0..400).map("Fz_N", |k, v| if k % 100 < 40 { 1e-3 * v } else { v.min(-1.0) }));
-    dir.train("a.csv", "force", "m.json", &[]).expect(0).never_says("rests at");
-}
-
-#[test]
-fn rows_that_align_marks_as_saturated_are_left_out() {
-    let cut = Recording::of(0..120).map("P4", |_, v| v.min(2.5));
-    let count = cut.numbers("P4").iter().filter(|v| **v == 2.5).count();
-    let p4 = cut.numbers("P4");
-    let status = |row: usize, _: &str| if p4[row] == 2.5 { "saturated: P4" } else { "ok" }.to_owned();
-    let dir = dir_with(&cut.with("sensor_status", status));
-    let answer = dir.train("a.csv", "force", "m.json", &["--json"]).expect(0).never_says("saturated?");
-    let report = answer.json();
-    assert_eq!((&report["data"][0]["faults"], &report["data"][0]["used"]), (&count.into(), &(120 - count).into()));
-    near(&numbers(&dir.parsed("m.json")["model"]["jacobian"][0]), &slopes(0), EXACT);
-    let kept = dir.train("a.csv", "force", "n.json", &["--keep-faults", "--json"]).expect(0).json();
-    assert_eq!((&kept["data"][0]["faults"], &kept["data"][0]["used"]), (&0.into(), &120.into()));
-    // What is wrong with a photodiode that is not read does not count.
-    let others = dir.train("a.csv", "force", "n.json", &["--inputs", "P1,P2", "--json"]).expect(0).json();
-    assert_eq!(others["data"][0]["used"], 120);
 }
 
 #[test]

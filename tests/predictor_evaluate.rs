@@ -238,21 +238,6 @@ fn shuffled_rows_flatter_and_the_report_says_how_much() {
 }
 
 #[test]
-fn a_part_that_cannot_be_fitted_says_so_and_the_others_go_on() {
-    let dir = trained();
-    dir.recording("large.csv", &Recording::of(300..400));
-    dir.recording("small.csv", &Recording::of(400..405));
-    let found = &evaluate(&dir, "large.csv small.csv", &["--by", "trajectory"])["held_out"];
-    let parts = found["parts"].list();
-    assert!(parts[0]["fault"].words().contains("8 terms need at least 9 rows; there are 5"), "{found}");
-    assert!(parts[0]["merit"].is_null() && parts[1]["fault"].is_null() && parts[1]["merit"]["rows"] == 5, "{found}");
-    assert_eq!(found["pooled"]["rows"], 5);
-    dir.recording("small2.csv", &Recording::of(405..410));
-    let neither = dir.lunula(&["evaluate", "m.json", "small.csv", "small2.csv", "--by", "trajectory"]).expect(2);
-    neither.says("none of 2 folds could be fitted");
-}
-
-#[test]
 fn the_folder_holds_the_table_the_pictures_and_the_report() {
     let dir = trained();
     let data = sessions(&dir);
@@ -286,23 +271,9 @@ fn the_folder_holds_the_table_the_pictures_and_the_report() {
     near(&of(&report, "rmse")[2..], &[rmse], EXACT);
     assert_eq!([&table[130]["recording"], &table[130]["session"], &table[130]["subject"]], ["2.csv", "2", "a"]);
 
-    // The same bytes again, but for the report's times.
-    evaluate(&dir, data, &["--by", "trajectory", "--out", "again", "--threads", "1"]);
-    dir.same_results("ev", "again");
     // What stood there is not touched by a run that fails.
     dir.lunula(&["evaluate", "m.json", "nowhere.csv", "--out", "ev"]).expect(2).says("nowhere.csv");
     assert_eq!(dir.bytes_of("ev"), found);
     let again = [&["evaluate", "m.json", "--out", "ev"], &data.split(' ').collect::<Vec<_>>()[..]].concat();
     dir.lunula(&again).expect(0).says("ev/held-out.png existed before and is not of this run");
-}
-
-#[test]
-fn posture_is_binned_by_its_own_size() {
-    let dir = trained();
-    dir.train("train.csv", "posture", "m.json", &["-q"]).expect(0);
-    dir.recording("r.csv", &Recording::of(300..360).map("J2_deg", |_, v| v - 2.0));
-    let report = evaluate(&dir, "r.csv", &["--out", "ev"]);
-    near(&[report["rmse"]["J2_deg"].number(), report["bias"]["J2_deg"].number()], &[2.0, 2.0], 1e-12);
-    assert_eq!(report["by_magnitude"]["of"], "J2_deg");
-    assert!(dir.path("ev/by-magnitude.png").is_file());
 }

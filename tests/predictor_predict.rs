@@ -173,15 +173,6 @@ fn intervals_stand_beside_the_predictions() {
 }
 
 #[test]
-fn rows_outside_the_training_range_are_counted_and_reported() {
-    let dir = models();
-    dir.recording("far.csv", &Recording::of(300..400).map("P1", |row, v| if row < 30 { v + 5.0 } else { v }));
-    let answer = dir.lunula(&["predict", "force.json", "far.csv", "--out", "p.csv", "--json"]).expect(0);
-    assert!(answer.json()["rows_outside"].as_u64().unwrap() >= 30);
-    answer.says("outside of the voltages that the model was trained on");
-}
-
-#[test]
 fn parquet_is_read_and_written_alike() {
     let dir = models();
     let both = ["force.json", "posture.json"];
