@@ -75,14 +75,6 @@ fn a_clean_scene_gives_every_angle_with_its_time() {
 }
 
 #[test]
-fn the_same_bytes_whatever_the_threads() {
-    let dir = scene(&["--noise", "4"]);
-    let line = "posture scene/video.mp4 --markers scene/markers.toml --out {out}/joints.csv --tracks {out}/tracks.csv";
-    let results = dir.on_any_threads(line);
-    assert!(["joints.csv", "tracks.csv", "joints-angles.png"].iter().all(|name| results.contains_key(*name)));
-}
-
-#[test]
 fn markers_of_one_colour_keep_their_names() {
     for more in [["--colours", "red"], ["--colours", "distinct"], ["--layout", "joints"]] {
         let dir = scene(&more);
@@ -202,32 +194,6 @@ fn a_clock_in_lower_rows_and_on_a_late_display_counts_as_it_does() {
 }
 
 #[test]
-fn parquet_holds_what_csv_holds() {
-    let dir = scene(&["--hide", "hand_prox@10+5"]);
-    posture(&dir, &[]).expect(0);
-    dir.lunula(&["posture", "scene/video.mp4", "--markers", "scene/markers.toml", "--out", "joints.parquet"]).expect(0);
-    let [csv, parquet] =
-        ["joints.csv", "joints.parquet"].map(|name| lunula::table::Table::read(&dir.path(name)).expect("a table"));
-    assert_eq!(csv.rows(), parquet.rows());
-    assert_eq!(csv.names(), parquet.names());
-    for name in csv.names().iter().filter(|name| **name != "status") {
-        let [ours, theirs] = [&csv, &parquet].map(|table| table.numbers(name).expect("numbers"));
-        for (a, b) in ours.iter().zip(&theirs) {
-            assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits), "{name}");
-        }
-    }
-}
-
-#[test]
-fn a_suggested_marker_file_runs_as_it_stands() {
-    let dir = scene(&["--colours", "distinct"]);
-    let suggested = dir.lunula(&["posture", "scene/video.mp4", "--suggest"]).expect(0);
-    dir.write("suggested.toml", &suggested.stdout);
-    dir.lunula(&["posture", "scene/video.mp4", "--markers", "suggested.toml", "--out", "joints.csv"]).expect(0);
-    is_accurate(&dir, &["J1", "J2", "J3"]);
-}
-
-#[test]
 fn hdr_has_the_angles_and_colours_of_ordinary_video() {
     let suggested = |more: &[&str]| {
         let dir = scene_of("1", &[&["--colours", "distinct"], more].concat());
@@ -296,19 +262,6 @@ fn smoothing_fills_nothing_and_does_better() {
         assert_eq!(a["J2_deg"].is_empty(), b["J2_deg"].is_empty(), "frame {}", a["frame"]);
     }
     assert!(rms(&smooth, &truth, "J3").0 < rms(&raw, &truth, "J3").0);
-}
-
-#[test]
-fn zero_angles_are_subtracted() {
-    let dir = scene(&[]);
-    posture(&dir, &[]).expect(0);
-    let plain = dir.table("joints.csv");
-    let markers = dir.text("scene/markers.toml");
-    dir.write("scene/markers.toml", markers + "\n[zero]\nJ2_deg = 1.5\n");
-    posture(&dir, &[]).expect(0);
-    for (a, b) in plain.iter().zip(dir.table("joints.csv")) {
-        assert!((known(a, "J2_deg").unwrap() - known(&b, "J2_deg").unwrap() - 1.5).abs() <= 2e-5);
-    }
 }
 
 #[test]
@@ -408,16 +361,6 @@ fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
 }
 
 #[test]
-fn thumb_and_index_of_distinct_colours_need_no_start() {
-    let dir = painted(&["--seconds", "1", "--seed", "8", "--colours", "distinct"]);
-    let markers = dir.text("scene/markers.toml");
-    assert!(!markers.contains("[start]"));
-    posture(&dir, &["--tracks", "tracks.csv", "--no-figures"]).expect(0);
-    let (seen, in_view) = is_rightly_named(&dir);
-    assert!(100 * seen >= 98 * in_view, "{seen} of {in_view} marks");
-}
-
-#[test]
 fn a_single_marker_has_tracks_and_no_angles() {
     let dir = scene(&["--colours", "distinct"]);
     let markers = dir.text("scene/markers.toml");
@@ -440,16 +383,6 @@ fn a_single_marker_has_tracks_and_no_angles() {
             assert!(off[0].hypot(off[1]) <= 1.0, "frame {} {}: {off:?}", row["frame"], row["marker"]);
         }
     }
-}
-
-#[test]
-fn a_plan_says_what_is_left_out_and_does_nothing() {
-    let dir = scene(&[]);
-    dir.words("posture scene/video.mp4 --markers scene/markers.toml --joints J2 --plan")
-        .expect(0)
-        .prints("left out")
-        .prints("hand_prox");
-    assert_eq!(dir.bytes_of(".").keys().filter(|name| !name.starts_with("scene/")).count(), 0);
 }
 
 #[test]

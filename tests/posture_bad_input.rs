@@ -133,21 +133,6 @@ fn one_marker_of_four_that_never_comes_leaves_the_other_joints() {
 }
 
 #[test]
-fn deep_full_and_odd_pictures_do_as_well() {
-    for more in
-        [&["--depth", "10"][..], &["--format", "444"], &["--format", "422"], &["--size", "637x359", "--format", "444"]]
-    {
-        let dir = scene(more);
-        posture(&dir, "scene/video.mp4").expect(0);
-        let truth = dir.table("scene/truth/joints.csv");
-        for (row, exact) in dir.table("joints.csv").iter().zip(&truth) {
-            let [found, exact] = [row, exact].map(|r| r["J2_deg"].parse::<f64>().expect("an angle"));
-            assert!((found - exact).abs() <= 1.5, "{more:?}: {found} for {exact}");
-        }
-    }
-}
-
-#[test]
 fn grey_video_of_coloured_markers_is_refused_or_right() {
     let dir = scene(&["--format", "grey"]);
     let answer = posture(&dir, "scene/video.mp4");
@@ -162,20 +147,6 @@ fn grey_video_of_coloured_markers_is_refused_or_right() {
     } else {
         assert!(answer.stderr.contains("scene/video.mp4") && !dir.path("joints.csv").exists());
     }
-}
-
-#[test]
-fn all_faults_of_a_marker_file_are_reported_together() {
-    let dir = scene(&[]);
-    dir.write(
-        "markers.toml",
-        MARKERS.replace("[joints]", "third = [\"a\", \"a\"]\n[joints]\nJ9 = [\"first\", \"fourth\"]\n")
-            + "[lens]\nfx = 3\n[zero]\nJ7_deg = 1\n",
-    );
-    let answer = posture(&dir, "scene/video.mp4");
-    let lines = answer.stderr.matches("markers.toml:").count();
-    assert!(lines >= 4, "{}", answer.stderr);
-    refused(&dir, answer, &["third", "fourth", "lens", "J7"]);
 }
 
 #[test]
@@ -210,12 +181,6 @@ fn results_never_replace_the_input_or_one_another() {
     }
     assert!(std::fs::read(dir.path("scene/video.mp4")).expect("a file") == before);
     assert!(!dir.path("joints.csv").exists());
-}
-
-#[test]
-fn a_joint_that_is_not_in_the_file_is_named() {
-    let dir = scene(&[]);
-    dir.words("posture scene/video.mp4 --markers markers.toml --out joints.csv --joints J4").expect(2).says("J4");
 }
 
 mod real_data {
