@@ -35,16 +35,6 @@ fn a_step_begins_at_rest_and_its_rows_stand_at_multiples() {
 }
 
 #[test]
-fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
-    let dir = Dir::new();
-    for (request, files) in
-        [("--pf2 ramp:0..8000@0..1 --until 2 --out {out}/t.csv", 3), ("--static 0..9000/500 --out {out}/s.csv", 6)]
-    {
-        assert_eq!(dir.on_any_threads(&format!("simulate {request}")).len(), files, "{request}");
-    }
-}
-
-#[test]
 fn a_file_of_loads_is_the_load_that_it_holds() {
     // Both are solved to 1e-10 D, and D is 1e-5 and 1e-4 m: measured 0 and, of a thousand rows, 1.6e-14.
     const NEAR_M: f64 = 2e-14;
@@ -302,16 +292,6 @@ fn bad_requests_are_refused_whole() {
     assert_eq!(dir.names_of("."), ["in-the-way"]);
 }
 
-#[test]
-fn the_plan_says_what_runs_and_what_is_left_out() {
-    let dir = Dir::new();
-    let plan = run(&dir, "--pf1 1000 --plan").expect(0).stdout;
-    assert!(plan.contains("401 rows") && plan.contains("left out"), "{plan}");
-    let plan = run(&dir, "--static 0..100/10 --plan --json").expect(0).json();
-    assert_eq!(plan["plan"][0]["fate"], "run");
-    assert!(dir.bytes_of(".").is_empty());
-}
-
 /// What a table of other programs begins with.
 const PEER_COLUMNS: &str =
     "stage,choice,scene,setting,error,error_unit,run_s,run_low_s,run_high_s,repeats,work,machine,version,date";
@@ -405,35 +385,4 @@ fn optics_are_chosen_and_the_tangent_touches_at_rest() {
     assert!(worst(&printed, &quadratic) <= DIGITS && worst(&exact, &quadratic) > 1e-3);
     // The run begins at rest, the working point.
     assert!((linear[0] - exact[0]).abs() <= DIGITS && worst(&exact, &linear) > 1e-3);
-}
-
-#[test]
-fn walls_without_damping_or_of_any_mass_come_to_the_same_rest() {
-    // Measured 7.8e-20 m.
-    const NEAR_M: f64 = 1e-16;
-    let dir = Dir::new();
-    let all = |symbol: &str, unit_and_value: &str| -> String {
-        ["C1", "C2", "V"].iter().map(|site| format!(" --set {symbol}_{site}_{unit_and_value}")).collect()
-    };
-    let rest = {
-        run(&dir, "--pf1 5000 --pf2 3000 --until 0 --out rest.csv --no-figures").expect(0);
-        dir.table("rest.csv").remove(0)
-    };
-    for (case, set) in
-        [("undamped", all("b", "N_s_per_m=0")), ("light", all("m", "kg=1e-12")), ("heavy", all("m", "kg=1"))]
-    {
-        run(
-            &dir,
-            &format!(
-                "--pf1 step:5000@0..9 --pf2 step:3000@0..9 --until 4 --every 0.1 {set} --out {case}.csv --no-figures"
-            ),
-        )
-        .expect(0);
-        let rows = dir.table(&format!("{case}.csv"));
-        assert_eq!(rows.len(), 41);
-        for wall in WALLS {
-            let gap = (number(&rows[40], wall) - number(&rest, wall)).abs();
-            assert!(gap <= NEAR_M, "{case}, {wall}: {gap:e}");
-        }
-    }
 }
