@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use lunula::table::{Column, TableWriter, Value};
-
 use crate::util::{Answer, Dir, Json, number};
 
 const COURSE: &str = "--path-m 1.42 --speed-mps 0.025 --decisions 27";
@@ -316,36 +314,4 @@ fn who_stops_early_is_named_and_does_not_bend_the_curve() {
     }
     study(12, 0).never_says("stopped early").never_says("were not done");
     study(11, 4).never_says("stopped early").says("pendant: 2 of 24 trials were not done");
-}
-
-#[test]
-fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
-    let dir = Dir::new();
-    dir.write("trials.csv", curves());
-    let columns =
-        vec![Column::text("operator"), Column::text("method"), Column::integer("trial"), Column::number("time_s")];
-    let path = dir.path("trials.parquet");
-    let mut parquet = TableWriter::create(&path, &path, columns, &[]).unwrap();
-    for row in dir.table("trials.csv") {
-        let trial = Value::Integer(row["trial"].parse().unwrap());
-        let time_s = Value::Number(number(&row, "time_s"));
-        parquet.write(&[Value::Text(&row["operator"]), Value::Text(&row["method"]), trial, time_s]).unwrap();
-    }
-    parquet.finish().unwrap();
-    let one = dir.on_any_threads(&format!("performance trials.csv {COURSE} --out {{out}}"));
-    assert_eq!(one.len(), 7);
-    run(&dir, &format!("trials.parquet {COURSE} --out parquet")).expect(0);
-    let mut parquet = dir.results_of("parquet");
-    let figures = String::from_utf8(parquet["performance.json"].clone()).unwrap();
-    parquet.insert("performance.json".to_owned(), figures.replace("trials.parquet", "trials.csv").into_bytes());
-    assert!(one == parquet);
-}
-
-#[test]
-fn a_plan_writes_nothing() {
-    let dir = Dir::new();
-    dir.write("trials.csv", by_hand());
-    run(&dir, &format!("trials.csv {COURSE} --plan")).expect(0).prints("learning curves").prints("by operator");
-    run(&dir, &format!("trials.csv {COURSE} --no-figures --out o")).expect(0);
-    assert!(!dir.path("o/performance-methods.png").exists() && dir.path("o/performance.json").is_file());
 }

@@ -58,13 +58,6 @@ fn maps_of_sixteen_subjects_equal_the_exact_ones() {
 }
 
 #[test]
-fn the_same_bytes_whatever_the_thread_count() {
-    let dir = Dir::new();
-    write(&small_set(5, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
-    assert!(dir.on_any_threads("photos set/photos --out {out}").len() > 30);
-}
-
-#[test]
 fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
     let dir = Dir::new();
     write(&small_set(5, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");

@@ -101,20 +101,6 @@ fn a_redrawn_outline_is_noticed() {
     assert_eq!(nails.matches(",detected,").count(), 1, "{nails}");
 }
 
-#[test]
-fn a_subject_that_fails_leaves_the_maps_of_the_others() {
-    let dir = Dir::new();
-    photographs(&dir, 3);
-    for pose in ["nominal", "flexion"] {
-        dir.write(&format!("photos/{pose}/s02.png"), "no picture");
-    }
-    dir.write("coloration.toml", COLORATION);
-    let answer = dir.lunula(&["run", "coloration.toml", "--out", "out", "--json"]).expect(1).says("nails/s02");
-    assert_eq!(counts(&answer), [3, 0, 1]);
-    let nails = dir.text("out/coloration/nails.csv");
-    assert!(nails.contains(",s01,") && nails.contains(",s03,") && !nails.contains(",s02,"), "{nails}");
-}
-
 const TRAINING: &str = r#"
 wanted = ["sets"]
 

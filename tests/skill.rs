@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use lunula::table::{Column, TableWriter, Value};
-
 use crate::util::{Answer, Dir, Json, number};
 
 /// Rows a second, and sums of rounded rows.
@@ -385,29 +383,6 @@ fn wrong_recordings_are_refused_and_others_are_done() {
     answer.says("failed: a.csv: has no normal force");
     dir.write("skill.csv", csv(NAMES, &rows(0.0, 4.0, &[&INDEX, &MIDDLE])));
     run(&dir, "skill.csv --out .").expect(2).says("is an input itself");
-}
-
-#[test]
-fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
-    let dir = Dir::new();
-    dir.write("a.csv", session(&[1, 2, 3], 2.0));
-    dir.write("b.csv", session(&[1, 3], 1.0));
-    let path = dir.path("c.parquet");
-    let columns = vec![Column::number("time_s"), Column::integer("trial"), Column::number("index.Fz_N")];
-    let mut parquet = TableWriter::create(&path, &path, columns, &[]).unwrap();
-    for row in dir.table("b.csv") {
-        let trial = Value::Integer(row["trial"].parse().unwrap());
-        let cells = [Value::Number(number(&row, "time_s")), trial, Value::Number(number(&row, "index.Fz_N"))];
-        parquet.write(&cells).unwrap();
-    }
-    parquet.finish().unwrap();
-    let both = "--subject anna,ben --reference-trial anna/2";
-    let one = dir.on_any_threads(&format!("skill a.csv b.csv {both} --out {{out}}"));
-    assert_eq!(one.len(), 14);
-    run(&dir, &format!("a.csv c.parquet {both} --out parquet")).expect(0);
-    let parquet = dir.results_of("parquet");
-    let renamed = String::from_utf8(parquet["skill.csv"].clone()).unwrap().replace("c.parquet", "b.csv");
-    assert!(one["skill.csv"] == renamed.into_bytes());
 }
 
 #[test]
