@@ -196,19 +196,6 @@ fn logs_of_before_have_the_bytes_of_before() {
 }
 
 #[test]
-fn seeds_differ_and_a_seed_does_not() {
-    let dir = Dir::new();
-    for (name, seed) in [("a", 1), ("b", 2), ("again", 1)] {
-        run(&dir, &format!("--protocol contacts --seconds 30 --seed {seed} --out {name}")).expect(0);
-    }
-    let [a, b, again] = ["a", "b", "again"].map(|name| dir.bytes_of(name));
-    assert!(a.len() == 5 && a == again);
-    for file in ["log.csv", "truth/log.csv", "truth/contacts.csv"] {
-        assert!(a[file] != b[file], "{file}");
-    }
-}
-
-#[test]
 fn other_commands_pass_over_the_column_of_contact() {
     let dir = Dir::new();
     for (name, more) in [("one", "--seed 1 --contact"), ("two", "--seed 2"), ("bare", "--seed 3 --no-forces --contact")]
