@@ -5,7 +5,7 @@ use std::fs;
 use crate::util::{Dir, touch_pipeline, without_phantom};
 
 /// Photographs of two poses to maps, generated on the way.
-const COLORATION: &str = r#"name = "colours"
+pub(crate) const COLORATION: &str = r#"name = "colours"
 wanted = ["maps"]
 [phantom]
 photos = { seed = 3, subjects = 3, poses = ["normal"], grey = true }
