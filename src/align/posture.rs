@@ -256,7 +256,6 @@ fn times(table: &Table) -> Result<Vec<f64>, TableError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{Column, TableWriter, Value};
 
     fn read(text: &str) -> Result<Posture, String> {
         let dir = tempfile::tempdir().unwrap();
@@ -316,52 +315,21 @@ mod tests {
     }
 
     #[test]
-    fn the_table_of_posture_is_read_alike_from_both_formats() {
-        let number = |name: &str| Column::rounded(name, 6);
-        let columns = vec![
-            Column::integer("frame"),
-            number("time_s"),
-            number("clock_s"),
-            number("J2_deg"),
-            number("J2_sd_deg"),
-            number("thumb_deg"),
-            number("thumb_sd_deg"),
-            Column::text("status"),
-            number("clock_read_s"),
-            number("clock_sd_s"),
-            number("clock_low_s"),
-            number("clock_high_s"),
-        ];
-        for extension in ["csv", "parquet"] {
-            let dir = tempfile::tempdir().unwrap();
-            let path = dir.path().join("joints").with_extension(extension);
-            let mut table = TableWriter::create(&path, &path, columns.clone(), &[]).unwrap();
-            let cells = [Value::Integer(0), 0.0.v(), 71.0.v(), 12.5.v(), 0.02.v()];
-            let rest = [30.0.v(), 0.03.v(), Value::Text("ok"), 71.0.v(), 0.02.v(), 70.99.v(), 71.01.v()];
-            table.write(&[&cells[..], &rest[..]].concat()).unwrap();
-            let cells = [Value::Integer(1), 0.033_367.v(), 71.033.v(), Value::Missing, Value::Missing];
-            let rest = [31.0.v(), 0.03.v(), Value::Text("lost: a"), Value::Missing, 0.01.v(), 71.0.v(), 71.05.v()];
-            table.write(&[&cells[..], &rest[..]].concat()).unwrap();
-            table.finish().unwrap();
-            let posture = Posture::read(&path).unwrap();
-            assert_eq!((posture.joints.join(","), posture.path.clone()), ("J2,thumb".to_owned(), path));
-            assert_eq!((posture.time_s, posture.clock_s), (vec![0.0, 0.033_367], vec![71.0, 71.033]));
-            assert!(same(&posture.angles_deg.concat(), &[12.5, f64::NAN, 30.0, 31.0]), "{extension}");
-            assert!(same(&posture.sds_deg.concat(), &[0.02, f64::NAN, 0.03, 0.03]), "{extension}");
-            let clock = posture.clock.unwrap();
-            assert!(same(&clock.read_s, &[71.0, f64::NAN]), "{extension}");
-            assert_eq!((clock.sd_s[1], clock.low_s[0], clock.high_s[1]), (0.01, 70.99, 71.05));
-        }
-    }
-
-    trait Cell {
-        fn v(self) -> Value<'static>;
-    }
-
-    impl Cell for f64 {
-        fn v(self) -> Value<'static> {
-            Value::Number(self)
-        }
+    fn the_table_of_posture_is_read() {
+        let posture = read(
+            "frame,time_s,clock_s,J2_deg,J2_sd_deg,thumb_deg,thumb_sd_deg,status,\
+             clock_read_s,clock_sd_s,clock_low_s,clock_high_s\n\
+             0,0,71,12.5,0.02,30,0.03,ok,71,0.02,70.99,71.01\n\
+             1,0.033367,71.033,,,31,0.03,lost: a,,0.01,71,71.05\n",
+        )
+        .unwrap();
+        assert_eq!(posture.joints, ["J2", "thumb"]);
+        assert_eq!((posture.time_s, posture.clock_s), (vec![0.0, 0.033_367], vec![71.0, 71.033]));
+        assert!(same(&posture.angles_deg.concat(), &[12.5, f64::NAN, 30.0, 31.0]));
+        assert!(same(&posture.sds_deg.concat(), &[0.02, f64::NAN, 0.03, 0.03]));
+        let clock = posture.clock.unwrap();
+        assert!(same(&clock.read_s, &[71.0, f64::NAN]));
+        assert_eq!((clock.sd_s[1], clock.low_s[0], clock.high_s[1]), (0.01, 70.99, 71.05));
     }
 
     #[test]

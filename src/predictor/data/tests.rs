@@ -2,7 +2,6 @@ use std::fmt::Write as _;
 
 use super::*;
 use crate::log::{AmbientOptions, Columns, Log, LogReading, samples};
-use crate::table::{Column, TableWriter, Value};
 use crate::trial::Folder;
 
 fn plain() -> RowOptions {
@@ -219,38 +218,6 @@ fn files_follow_each_other_and_have_to_agree() {
         "{said}"
     );
     assert!(read_data(&[a, folder.file("d.csv", "P1,P2,J2_deg\n")], &angle()).unwrap().files[1].rows == 0);
-}
-
-#[test]
-fn parquet_is_read_like_csv() {
-    let folder = Folder::new();
-    let rows = 300;
-    let value = |k: usize, p: usize| (k as f64 * 0.1 + p as f64).sin();
-    let paths = ["t.csv", "t.parquet"].map(|name| folder.path(name));
-    for path in &paths {
-        let mut columns = vec![Column::number("time_s")];
-        columns.extend((1..=3).map(|p| Column::number(format!("P{p}"))));
-        columns.extend([Column::number("J2_deg"), Column::text("session"), Column::text("sensor_status")]);
-        let mut table = TableWriter::create(path, path, columns, &[]).unwrap();
-        for k in 0..rows {
-            let hole = if k % 7 == 3 { Value::Missing } else { Value::Number(value(k, 9)) };
-            let status = if k % 11 == 0 { "saturated: P2" } else { "ok" };
-            let session = Value::Text(if k < 100 { "one" } else { "two" });
-            let mut cells = vec![Value::Number(k as f64 * 0.04)];
-            cells.extend((1..=3).map(|p| Value::Number(value(k, p))));
-            cells.extend([hole, session, Value::Text(status)]);
-            table.write(&cells).unwrap();
-        }
-        table.finish().unwrap();
-    }
-    let [csv, parquet] = paths.map(|path| read_data(&[path], &angle()).unwrap());
-    assert_eq!(
-        (csv.data.x(), csv.data.y(), csv.data.time_s()),
-        (parquet.data.x(), parquet.data.y(), parquet.data.time_s())
-    );
-    assert_eq!(counts(&csv), counts(&parquet));
-    assert_eq!(counts(&csv), [300, 233, 39, 0, 28]);
-    assert_eq!(csv.data.recordings().len(), 2);
 }
 
 /// A modulated log: lit and unlit samples of three photodiodes, with forces.
