@@ -7,7 +7,6 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::hemodynamics::given::{LoadOptions, ModelOptions, Start};
 use crate::hemodynamics::grid::{multiple, multiples_within};
-use crate::job;
 
 /// The files that a run reads.
 #[derive(Debug, Clone, Default, Args)]
@@ -50,12 +49,6 @@ pub struct SimulateOptions {
     /// The model.
     #[command(flatten)]
     pub model: ModelOptions,
-}
-
-impl Default for SimulateOptions {
-    fn default() -> Self {
-        job::defaults()
-    }
 }
 
 /// More values than a run keeps at once.
@@ -104,20 +97,5 @@ impl SimulateOptions {
             faults.push(format!("--rtol {:e}: choose 1e-13 to 1e-2, as 1e-8", self.rtol));
         }
         faults
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_time_is_one_row_and_every_fault_is_reported() {
-        let none = SimulateOptions { until_s: 0.0, ..SimulateOptions::default() };
-        assert_eq!((none.times_s(), none.faults(2)), (vec![0.0], vec![]));
-        let wrong = SimulateOptions { until_s: -1.0, every_s: 0.0, rtol: f64::NAN, ..SimulateOptions::default() };
-        assert_eq!(wrong.faults(2).len(), 3);
-        let huge = SimulateOptions { until_s: 1e9, every_s: 1e-6, ..SimulateOptions::default() };
-        assert!(huge.faults(2)[0].contains("rows"), "{:?}", huge.faults(2));
     }
 }

@@ -122,22 +122,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn forces_stay_within_the_cone_of_friction() {
-        let random = ForceTrajectory::Random { hz: 0.1, seed: 5 }.press(None);
-        let spiral = ForceTrajectory::Spiral(Spiral::default()).press(None);
-        let mut greatest = 0.0f64;
-        for k in 0..4000 {
-            for press in [&random, &spiral] {
-                let [fx, fy, fz] = press(0.05 * f64::from(k));
-                assert!((-3.0..=0.0).contains(&fz) && fx.hypot(fy) <= -0.75 * fz + 1e-12);
-            }
-            greatest = greatest.max(-random(0.05 * f64::from(k))[2]);
-        }
-        assert!(greatest > 2.4);
-        assert_ne!(random(1.0), ForceTrajectory::Random { hz: 0.1, seed: 6 }.press(None)(1.0));
-    }
-
-    #[test]
     fn cycles_have_the_ranges_and_rates_of_the_preliminary_experiments() {
         for (which, shear, least_n, most_n) in [
             (Cycles::Normal, None, -4.0, 0.0),

@@ -28,12 +28,6 @@ pub struct RenderOptions {
     pub noise_seed: u64,
 }
 
-impl Default for RenderOptions {
-    fn default() -> Self {
-        Self { depth: Depth::Eight, grey: false, noise_sd: 0.0, noise_seed: 0 }
-    }
-}
-
 const KIND_NOISE: u32 = 2;
 
 /// Rows in parallel; each has its own random numbers, so the threads don't show. `level` rounds a value of 0 to 1.

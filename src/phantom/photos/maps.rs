@@ -47,23 +47,3 @@ impl ExactMaps {
             .map_collect(|&n, &squares| if n < 2 { f32::NAN } else { (squares / f64::from(n - 1)).sqrt() as f32 })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use ndarray::array;
-
-    use super::*;
-
-    #[test]
-    fn mean_and_sd_of_what_was_seen() {
-        let mut maps = ExactMaps::new(2);
-        for picture in [array![[1.0, 2.0], [f32::NAN, f32::NAN]], array![[3.0, 2.0], [5.0, f32::NAN]]] {
-            maps.add(&picture);
-        }
-        let (mean, sd) = (maps.mean(), maps.sd());
-        assert_eq!(maps.count, array![[2, 2], [1, 0]]);
-        assert_eq!([mean[[0, 0]], mean[[0, 1]], mean[[1, 0]]], [2.0, 2.0, 5.0]);
-        assert_eq!([sd[[0, 0]], sd[[0, 1]]], [2.0_f32.sqrt(), 0.0]);
-        assert!(mean[[1, 1]].is_nan() && sd[[1, 0]].is_nan() && sd[[1, 1]].is_nan());
-    }
-}
