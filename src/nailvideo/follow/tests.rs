@@ -73,35 +73,6 @@ fn the_nail_is_followed_within_the_bars() {
 }
 
 #[test]
-fn another_nail_in_the_same_place_is_not_followed() {
-    let (scene, other) = (Scene::new(192.0, 1), Scene::new(192.0, 9));
-    let first = scene.picture(&Shot::REST, 1);
-    let mut follower = Follower::new(&first.frame(0, 0.0), 0, scene.frame_from_nail);
-    let is_there = |k: u64| !(4..12).contains(&k);
-    let mut back = Vec::new();
-    for k in 1..24 {
-        let picture = if is_there(k) { &scene } else { &other }.picture(&Shot::REST, 100 + k);
-        let place = follower.step(&picture.frame(k, k as f64 / 30.0));
-        assert!(is_there(k) || place.is_err(), "{k}: {place:?}");
-        back.extend((k >= 12 && place.is_ok()).then_some(k));
-    }
-    // Three frames confirm it.
-    assert!(back.first().is_some_and(|&k| (14..=20).contains(&k)) && back.len() >= 4, "{back:?}");
-}
-
-#[test]
-fn a_hand_that_leaves_is_lost() {
-    let scene = Scene::new(192.0, 1);
-    let first = scene.picture(&Shot::REST, 1);
-    let mut follower = Follower::new(&first.frame(0, 0.0), 0, scene.frame_from_nail);
-    let bare = scene.picture(&Shot { nail: false, ..Shot::REST }, 2);
-    for k in 1..12 {
-        let place = follower.step(&bare.frame(k, k as f64 / 30.0));
-        assert!(place.is_err(), "{k}: {place:?}");
-    }
-}
-
-#[test]
 fn a_nail_that_was_seen_to_change_is_found_again() {
     let first = Scene::new(192.0, 1);
     let noisy = |noise: f64| {
