@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use lunula::video::{Encoder, Encoding, Format, Item, Picture, Plane, Turn, Video};
+use lunula::video::{Curve, Encoder, Encoding, Format, Item, Matrix, Picture, Plane, Turn, Video};
 
 use crate::util::Dir;
 
@@ -113,6 +113,8 @@ fn a_press_has_its_onset_and_its_release() {
     // The same bytes whatever the threads.
     dir.words(&job.replace("--out out", "--threads 1 --out one")).expect(0);
     dir.same_results("out", "one");
+    // `predict` and its like read it as a log.
+    dir.words("nailvideo s/video.mp4 --outline s/outline.json --plan").expect(0);
 }
 
 #[test]
@@ -121,6 +123,12 @@ fn what_can_not_be_followed_is_refused_with_its_remedy() {
     dir.words("phantom nailvideo --size 160x128 --nail-px 20 --seconds 1 --x264 ultrafast --out tiny").expect(0);
     let small = dir.words("nailvideo tiny/video.mp4 --outline tiny/outline.json --out out").expect(2);
     small.says("20 px wide").says("film it nearer");
+    dir.write(
+        "far.toml",
+        "name = 'x'\nnail_width_mm = 12.0\ndiameter_mm = 1.0\n[[photodiode]]\nname = 'P3'\nu = 1.4\nv = 0.0\n",
+    );
+    let far = "nailvideo tiny/video.mp4 --outline tiny/outline.json --positions far.toml --out out";
+    dir.words(far).expect(2).says("far.toml").says("P3").says("outside of the nail");
     dir.words("nailvideo tiny/video.mp4 --maps 3..1 --out out").expect(2).says("two times in seconds");
     dir.words("nailvideo nowhere.mp4 --out out").expect(2).says("nowhere.mp4");
     dir.words("nailvideo tiny/video.mp4 --masks tiny --out out").expect(2).says("name the mask as the video");
@@ -179,6 +187,60 @@ pub(crate) fn write(path: &Path, turn: Turn, pictures: impl Iterator<Item = (Pic
     let mut encoder = Encoder::create(path, &encoding).expect("a file");
     pictures.for_each(|(picture, ticks)| encoder.push(&picture, ticks).expect("encoded"));
     encoder.finish().expect("written");
+}
+
+/// The picture in so many times the light.
+fn in_light(picture: &Picture, factor: f64) -> Picture {
+    let Format { width, height, .. } = picture.format;
+    let [luma, blue, red] = [0, 1, 2].map(|k| &picture.planes[k]);
+    let lit = |part: f64| Curve::Bt709.encoded(factor * Curve::Bt709.light(part));
+    let mut planes = picture.planes.clone();
+    let mut chroma = vec![[0.0; 2]; blue.len()];
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let (at, block) = (y * width + x, y / 2 * (width / 2) + x / 2);
+        let rgb = Matrix::BT709.to_own_rgb([luma[at], blue[block], red[block]].map(f64::from));
+        let samples = Matrix::BT709.from_own_rgb(rgb.map(lit));
+        planes[0][at] = samples[0].round() as u8;
+        (0..2).for_each(|k| chroma[block][k] += 0.25 * samples[k + 1]);
+    }
+    for (at, samples) in chroma.into_iter().enumerate() {
+        (0..2).for_each(|k| planes[k + 1][at] = samples[k].round() as u8);
+    }
+    Picture { format: picture.format, planes }
+}
+
+#[test]
+fn light_that_falls_by_a_third_moves_no_photodiode() {
+    let dir = Dir::new();
+    dir.words(&SCENE.replace("--seconds 6", "--seconds 4")).expect(0);
+    let all = pictures(&dir.path("s/video.mp4"));
+    // Down to 70 % and back.
+    let factor = |k: usize| 0.85 + 0.15 * (std::f64::consts::TAU * k as f64 / all.len() as f64).cos();
+    let times = || (0..all.len()).map(|k| 1000 * k as i64 / 30);
+    write(&dir.path("plain.mp4"), Turn::None, all.iter().cloned().zip(times()));
+    let lit = all.iter().enumerate().map(|(k, one)| in_light(one, factor(k)));
+    write(&dir.path("dim.mp4"), Turn::None, lit.zip(times()));
+    for light in ["red", "skin", "none"] {
+        let [plain, dim] = ["plain", "dim"].map(|name| {
+            let job = format!("nailvideo {name}.mp4 --outline s/outline.json --no-figures --light {light}");
+            dir.words(&format!("{job} --out {name}-{light}")).expect(0);
+            dir.table(&format!("{name}-{light}/photodiodes.csv"))
+        });
+        let by = |name: &str| {
+            let of = |k: usize| {
+                let (before, after) = (number(&plain[k][name])?, number(&dim[k][name])?);
+                let is_ratio = light != "none";
+                Some(if is_ratio { after - before } else { 100.0 * (after / before / factor(k)).ln() })
+            };
+            let known: Vec<f64> = (0..all.len()).filter(|&k| factor(k) < 0.8).filter_map(of).collect();
+            assert!(known.len() >= 40, "{light} {name}");
+            known.iter().sum::<f64>() / known.len() as f64
+        };
+        let changes: Vec<f64> = (1..=8).map(|k| by(&format!("P{k}"))).collect();
+        let mean = changes.iter().sum::<f64>() / 8.0;
+        println!("{light}: {changes:.2?}, {mean:.2} in the mean");
+        assert!(mean.abs() <= 0.5, "{light}: {changes:.2?}");
+    }
 }
 
 #[test]
