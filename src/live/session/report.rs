@@ -326,6 +326,14 @@ fn losses(report: &SessionReport) -> Vec<String> {
                 warnings.push(format!("{whose}{count} {what} {how}"));
             }
         }
+        if counts.shared > 0 {
+            warnings.push(format!(
+                "{whose}{} of {} {what} have the time of the row before (rows stamped in packets, or that came twice): \
+                 the rate is by their number, and when within a packet each was made is not known, nor all that is \
+                 lost; let the device stamp each row, or number them in a column n",
+                counts.shared, counts.rows
+            ));
+        }
         if let Some(burst_s) = stream.burst_s.filter(|burst_s| *burst_s > BURST_S) {
             warnings.push(format!(
                 "{whose}{what} have no time of their own and come in bursts, {:.0} ms apart: their times are spread \

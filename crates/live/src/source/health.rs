@@ -113,26 +113,27 @@ impl Health {
 
     /// When silence becomes a stall; none where it is one, or the source is gone.
     /// Then it is `otherwise_ns`.
-    pub(in crate::source) fn due_ns(&self, period_s: Option<f64>, otherwise_ns: Option<u64>) -> Option<u64> {
+    pub(in crate::source) fn due_ns(&self, step_s: Option<f64>, otherwise_ns: Option<u64>) -> Option<u64> {
         let waits = matches!(self.state.condition, Condition::Ok | Condition::Slow);
-        let stall_ns = waits.then(|| self.alive_ns + self.silence_ns(period_s) + 1);
+        let stall_ns = waits.then(|| self.alive_ns + self.silence_ns(step_s) + 1);
         stall_ns.into_iter().chain(otherwise_ns).min()
     }
 
-    fn silence_ns(&self, period_s: Option<f64>) -> u64 {
-        match period_s.filter(|_| self.any) {
-            Some(period_s) => SILENCE_NS.max((SILENT_PERIODS * period_s * 1e9) as u64),
+    fn silence_ns(&self, step_s: Option<f64>) -> u64 {
+        match step_s.filter(|_| self.any) {
+            Some(step_s) => SILENCE_NS.max((SILENT_PERIODS * step_s * 1e9) as u64),
             None => FIRST_ROW_NS,
         }
     }
 
-    /// What silence or a lack of rows has changed; `clocked` where the period is the device's own.
-    pub(in crate::source) fn look(&mut self, now_ns: u64, period_s: Option<f64>, clocked: bool) -> Option<State> {
+    /// What silence, by the step from stamp to stamp, or a lack of rows, by the period of the device's own clock, has
+    /// changed.
+    pub(in crate::source) fn look(&mut self, now_ns: u64, step_s: Option<f64>, period_s: Option<f64>) -> Option<State> {
         if !matches!(self.state.condition, Condition::Ok | Condition::Slow) {
             self.window = (0, now_ns);
             return None;
         }
-        if now_ns > self.alive_ns + self.silence_ns(period_s) {
+        if now_ns > self.alive_ns + self.silence_ns(step_s) {
             return self.set(Condition::Stalled, self.alive_ns);
         }
         let (rows, since_ns) = self.window;
@@ -140,7 +141,7 @@ impl Health {
             return None;
         }
         self.window = (0, now_ns);
-        let due = (now_ns - since_ns) as f64 / 1e9 / period_s.filter(|_| clocked)?;
+        let due = (now_ns - since_ns) as f64 / 1e9 / period_s?;
         match self.state.condition {
             // Few rows a second say nothing about a rate.
             Condition::Ok if due >= 10.0 && f64::from(rows) < SLOW_BELOW * due => self.set(Condition::Slow, since_ns),
@@ -162,8 +163,8 @@ mod tests {
             let mut health = Health::new(Condition::Ok, 0);
             assert_eq!(health.due_ns(None, None), Some(1000 * MS + 1), "a stream without samples");
             health.row(2000 * MS);
-            assert_eq!(health.look((2000 + silence_ms) * MS, Some(period_s), true), None);
-            let stalled = health.look((2000 + silence_ms) * MS + 1, Some(period_s), true).unwrap();
+            assert_eq!(health.look((2000 + silence_ms) * MS, Some(period_s), Some(period_s)), None);
+            let stalled = health.look((2000 + silence_ms) * MS + 1, Some(period_s), Some(period_s)).unwrap();
             assert_eq!((stalled.condition, stalled.since_ns), (Condition::Stalled, 2000 * MS));
             assert_eq!(health.due_ns(Some(period_s), None), None);
             assert_eq!(health.row(5000 * MS).unwrap().condition, Condition::Ok);
@@ -179,7 +180,7 @@ mod tests {
             if !slow || ms % 2 == 0 {
                 health.row(ms * MS);
             }
-            changes.extend(health.look(ms * MS, Some(0.001), true).map(|state| state.condition));
+            changes.extend(health.look(ms * MS, Some(0.001), Some(0.001)).map(|state| state.condition));
         }
         assert_eq!(changes, [Condition::Slow, Condition::Ok]);
         assert_eq!(health.history().0.len(), 3);

@@ -88,7 +88,7 @@ impl Counter {
         let turn = 1_u64 << bits;
         let ahead = count.wrapping_sub(last) & (turn - 1);
         let turns = rows.map_or(0.0, |rows| ((rows - ahead as f64) / turn as f64).round()).clamp(0.0, 1e6);
-        ahead + turns as u64 * turn
+        (turns as u64).saturating_mul(turn).saturating_add(ahead)
     }
 
     /// How many counts it went on where it begins again after 8, 16 or 32 bits, if it does.

@@ -71,6 +71,8 @@ pub struct RowCounts {
     /// Rows that probably never came, by gaps in time of more than 1.5 periods and than the clock's resolution
     /// explains; of streams without a counter.
     pub lost_by_time: u64,
+    /// Rows that have the time of the row before, and no tick of a coarse clock explains it.
+    pub shared: u64,
     /// Rows that came twice and were dropped.
     pub duplicates: u64,
     /// Rows that came behind later ones and were dropped.
@@ -96,6 +98,8 @@ pub struct Sequence {
     /// The next sample is the doubtful one, and the one behind it agrees with it.
     trusted: bool,
     period: Period,
+    /// Rows that are lost just before the latest stamp, as counted.
+    gap_rows: u64,
     /// Of rows without a clock.
     arrivals: Arrivals,
     /// What is added to the device's seconds since its clock was set.
@@ -130,6 +134,7 @@ impl Sequence {
             doubt: None,
             trusted: false,
             period: Period::default(),
+            gap_rows: 0,
             arrivals: Arrivals::default(),
             shift_s: 0.0,
             last: None,
@@ -156,6 +161,12 @@ impl Sequence {
     #[must_use]
     pub fn period_s(&self) -> Option<f64> {
         if self.clock.is_some() { self.period.mean_s } else { self.arrivals.period.mean_s }
+    }
+
+    /// The time from stamp to stamp, seconds: of rows that are stamped together several periods.
+    #[must_use]
+    pub fn step_s(&self) -> Option<f64> {
+        if self.clock.is_some() { self.period.of_stamps_s() } else { self.arrivals.period.mean_s }
     }
 
     /// So many rows arrive next, at once; of use where they have no time of their own.
@@ -217,7 +228,7 @@ impl Sequence {
     /// Takes a sample that came at `host_ns`.
     pub fn take(&mut self, sample: &Sample, host_ns: u64) -> Verdict {
         let host_s = self.last.filter(|_| self.is_live()).map(|last| seconds(host_ns.saturating_sub(last.host_ns)));
-        let expected = Expected { host_s, period_s: self.period_s() };
+        let expected = Expected { host_s, period_s: self.step_s() };
         let (clock, counter) = (self.clock.clone(), self.counter.clone());
         let device_s = match &mut self.clock {
             None => Device::Host(self.arrivals.time_s(seconds(host_ns))),
@@ -283,15 +294,15 @@ impl Sequence {
 
     /// Whether the clock goes on by more than lost rows, or what the host saw pass, explain.
     fn leaps(&self, step_s: Option<f64>, host_s: Option<f64>) -> bool {
-        let rows_s = self.period_s().map_or(LEAP_S, |period_s| period_s * f64::from(LATE_ROWS));
+        let rows_s = self.step_s().map_or(LEAP_S, |step_s| step_s * f64::from(LATE_ROWS));
         step_s.is_some_and(|step_s| step_s > rows_s + 2.0 * host_s.unwrap_or(0.0))
     }
 
     /// Whether the clock fell back by more than a row that is late explains.
     fn fell_back(&self, device_s: Device, counted: bool) -> bool {
         let Device::Back { by_s } = device_s else { return false };
-        let most_s = match self.period_s() {
-            Some(period_s) => period_s * f64::from(LATE_ROWS),
+        let most_s = match self.step_s() {
+            Some(step_s) => step_s * f64::from(LATE_ROWS),
             // The counter knows.
             None if counted => f64::INFINITY,
             None => 0.0,
@@ -306,7 +317,7 @@ impl Sequence {
             return if matches!(device_s, Device::Back { .. }) { Err(Count::Late) } else { Ok(0) };
         };
         let back = matches!(device_s, Device::Back { .. });
-        let rows = step_s.filter(|_| !back).zip(self.period_s()).map(|(step_s, period_s)| step_s / period_s);
+        let rows = step_s.filter(|_| !back).zip(self.step_s()).map(|(step_s, period_s)| step_s / period_s);
         // By arrival alone rows come in heaps.
         let rows = rows.filter(|_| self.clock.is_some() || step_s.is_some_and(|step_s| step_s > HEAP_S));
         let still = back || self.clock.is_some() && step_s.is_some_and(|step_s| step_s <= 0.0);
@@ -351,7 +362,7 @@ impl Sequence {
         let begins = std::mem::take(&mut self.begins);
         self.late_run = 0;
         self.counts.rows += 1;
-        self.counts.lost += lost;
+        self.counts.lost = self.counts.lost.saturating_add(lost);
         let time_s = match device_s {
             Device::Host(time_s) => time_s,
             Device::At(time_s) => time_s + self.shift_s,
@@ -368,12 +379,18 @@ impl Sequence {
     fn step(&mut self, step_s: f64, lost: u64) {
         let Some((unwrap, per_second)) = &self.clock else { return };
         let resolution_s = unwrap.resolution() / per_second;
-        if let (false, Some(period_s), Some(longest_s)) = (self.counted, self.period_s(), self.period.longest_s())
-            && step_s > longest_s
-        {
-            self.counts.lost_by_time += ((step_s / period_s).round() as u64).saturating_sub(1);
-        }
         self.period.push(step_s / (lost + 1) as f64, resolution_s);
+        if step_s > 0.0 {
+            self.gap_rows = 0;
+        } else {
+            self.counts.shared += u64::from(self.period.is_packed());
+        }
+        if !self.counted {
+            // A row that shares its stamp may explain the step to it.
+            let gap_rows = self.period.lost();
+            self.counts.lost_by_time = (self.counts.lost_by_time - self.gap_rows).saturating_add(gap_rows);
+            self.gap_rows = gap_rows;
+        }
     }
 }
 

@@ -1,5 +1,11 @@
 //! Samples in sequence: lost, late, repeated, and clocks that were set.
 
+use proptest::collection::vec;
+use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
 use super::testing::Taker;
 use super::*;
 use crate::wire::{Meaning, Sample, Use};
@@ -219,4 +225,80 @@ fn a_device_that_starts_again_at_once_is_no_repetition() {
     counted.begin();
     assert_eq!(row(counted.take(&sample(f64::NAN, Some(0)), 3 * MS)), (0.003, 0, true));
     assert_eq!(counted.counts().duplicates, 0);
+}
+
+#[test]
+fn rows_that_share_their_tick_beside_one_that_is_skipped_are_none_lost() {
+    // 1000 rows a second of a crystal of its own, which crosses the ticks of `millis()`; its interrupt jitters.
+    for (ppm, jitter_ms) in [(20.0, 0.02), (50.0, 0.1), (-20.0, 0.02), (-50.0, 0.1)] {
+        for seed in 0..5 {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let (mut rows, mut last_ms) = (clocked(false, Link::Recording), 0.0_f64);
+            for n in 0..60_000 {
+                let late: f64 = StandardNormal.sample(&mut random);
+                last_ms = last_ms.max(5.3 + f64::from(n) * (1.0 + ppm * 1e-6) + jitter_ms * late);
+                row(rows.take(&sample(last_ms.floor(), None), 0));
+            }
+            let counts = rows.counts();
+            assert_eq!((counts.lost_by_time, counts.shared), (0, 0), "{ppm} {jitter_ms} {seed}");
+            assert!((rows.period_s().unwrap() / 1e-3 - 1.0).abs() <= 1e-3, "{:?}", rows.period_s());
+        }
+    }
+}
+
+#[test]
+fn rows_that_are_stamped_together_are_counted_and_none_is_lost() {
+    for (least, most) in [(2, 2), (1, 2), (1, 3), (2, 6), (8, 8), (50, 50)] {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut rows = clocked(false, Link::Recording);
+        let mut taker = Taker::default();
+        let (mut made, mut stamps) = (0_u32, 0_u32);
+        while made < 6000 {
+            let packet = random.random_range(least..=most);
+            made += packet;
+            stamps += 1;
+            for _ in 0..packet {
+                taken(&mut taker, &mut rows, sample(1e6 + 4.0 * f64::from(made), None), 0);
+            }
+        }
+        let counts = rows.counts();
+        let period_s = rows.period_s().unwrap();
+        assert!((period_s / 0.004 - 1.0).abs() <= 1e-9, "{least} to {most}: {period_s}");
+        let shared = counts.shared.abs_diff(u64::from(made - stamps));
+        // Before the first step nothing is known.
+        assert!(counts.lost_by_time == 0 && shared < u64::from(most), "{least} to {most}: {counts:?}");
+        assert_eq!((counts.rows, counts.doubtful), (u64::from(made), 0), "{least} to {most}");
+    }
+}
+
+/// Equal, back, tiny and huge, as stamps or as steps between them.
+fn any_stamp() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), Just(1.0), Just(2.0), -3.0..3.0, Just(-1e308), Just(1e308), Just(5e-324)]
+}
+
+proptest! {
+    #[test]
+    fn no_stamps_stop_a_stream(
+        stamps in vec(any_stamp(), 1..300),
+        steps in any::<bool>(),
+        counted in any::<bool>(),
+        bits in prop_oneof![Just(None), (1_u32..64).prop_map(Some)],
+        per_second in prop_oneof![Just(1.0), Just(1e3), Just(1e6)],
+        counts in vec(prop_oneof![0_u64..3, any::<u64>()], 300),
+    ) {
+        let uses = [Use::Time { per_second }, Use::Counter];
+        let meaning = Meaning { uses: uses[..=usize::from(counted)].to_vec(), values: 0, texts: 0 };
+        for link in [Link::Recording, Link::Pipe, Link::Device] {
+            let (mut rows, mut taker) = (Sequence::new(&meaning, link, bits), Taker::default());
+            let (mut at, mut count) = (0.0_f64, 0_u64);
+            for (stamp, step) in stamps.iter().zip(&counts) {
+                at = if steps && (at + stamp).is_finite() { at + stamp } else { *stamp };
+                count = count.wrapping_add(*step);
+                for (_, verdict) in taker.take(&mut rows, sample(at, counted.then_some(count)), *step >> 2) {
+                    prop_assert!(!matches!(verdict, Verdict::Row { time_s, .. } if time_s.is_nan()), "{:?}", verdict);
+                }
+                prop_assert!(rows.period_s().is_none_or(|period_s| period_s > 0.0 && period_s.is_finite()));
+            }
+        }
+    }
 }

@@ -278,7 +278,7 @@ impl Stream {
         if sequence.has_clock() {
             self.envelope.push(time_s, now_ns as f64 / 1e9);
         }
-        self.gaps.row(time_s, begins, sequence.period_s());
+        self.gaps.row(time_s, begins, sequence.step_s());
         if let Some(state) = self.health.row(now_ns) {
             on.send(Event::State(state));
         }
@@ -314,9 +314,9 @@ impl Stream {
 
     /// Looks whether rows come as they should.
     fn look(&mut self, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
-        let clocked = self.sequence.as_ref().is_some_and(Sequence::has_clock);
-        let period_s = self.period_s();
-        if let Some(state) = self.health.look(now_ns, period_s, clocked) {
+        let clocked = self.sequence.as_ref().filter(|sequence| sequence.has_clock());
+        let period_s = clocked.and_then(Sequence::period_s);
+        if let Some(state) = self.health.look(now_ns, self.step_s(), period_s) {
             on.send(Event::State(state));
         }
         if self.garbled_for_ns().is_some_and(|since_ns| now_ns >= since_ns)

@@ -198,7 +198,7 @@ impl Stream {
             return None;
         }
         match &self.feed {
-            Feed::Live(_) => self.health.due_ns(self.period_s(), self.garbled_for_ns()),
+            Feed::Live(_) => self.health.due_ns(self.step_s(), self.garbled_for_ns()),
             Feed::Play(play) => match play.waiting {
                 Some(row) if play.holds(&row) => None,
                 row => Some(row.map_or(0, |row| row.due_ns)),
@@ -281,6 +281,11 @@ impl Stream {
     #[must_use]
     pub fn period_s(&self) -> Option<f64> {
         self.sequence.as_ref().and_then(Sequence::period_s)
+    }
+
+    /// The time from stamp to stamp, seconds: of rows that are stamped together several periods.
+    fn step_s(&self) -> Option<f64> {
+        self.sequence.as_ref().and_then(Sequence::step_s)
     }
 
     /// The line between the device's clock and the host's; none where it has none, or rows do not come live.

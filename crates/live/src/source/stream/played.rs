@@ -23,7 +23,7 @@ impl Stream {
                 if !row.time_s.is_nan() {
                     play.played_s = row.time_s;
                 }
-                self.gaps.row(row.time_s, row.begins, self.period_s());
+                self.gaps.row(row.time_s, row.begins, self.step_s());
                 self.health.row(now_ns);
                 let Waiting { time_s, lit, lost, begins, .. } = row;
                 let Decoded { values, texts, .. } = self.decoder.decoded();
