@@ -106,7 +106,7 @@ impl Period {
         if self.packets.is_some() {
             return;
         }
-        if self.stamp.step_s <= SHARED_TICKS * self.resolution_s {
+        if !self.is_packet() {
             (self.even_s, self.uneven_blocks) = (None, UNEVEN_BLOCKS);
             self.add(0.0);
         } else {
@@ -143,16 +143,16 @@ impl Period {
         }
     }
 
-    /// Whether rows are stamped together.
+    /// Whether rows of the latest stamp share no tick, and were stamped together where they are several.
     #[must_use]
-    pub fn is_packed(&self) -> bool {
-        self.packets.is_some()
+    pub fn is_packet(&self) -> bool {
+        self.stamp.step_s > SHARED_TICKS * self.resolution_s
     }
 
     /// The mean step from stamp to stamp, seconds: that from row to row, but where rows are stamped together.
     #[must_use]
     pub fn of_stamps_s(&self) -> Option<f64> {
-        let rows = if self.is_packed() { self.rows_of_packet.max(1.0) } else { 1.0 };
+        let rows = if self.packets.is_some() { self.rows_of_packet.max(1.0) } else { 1.0 };
         self.mean_s.map(|mean_s| rows * mean_s)
     }
 
@@ -161,9 +161,11 @@ impl Period {
     pub fn lost(&self) -> u64 {
         let (Some(mean_s), step_s) = (self.mean_s, self.stamp.step_s) else { return 0 };
         // Packets are stamped behind their rows or before them, and a row may just have missed its own.
-        let rows = if self.is_packed() { self.stamp.rows.max(self.rows_before) } else { 1 };
-        let missed = if self.is_packed() { mean_s } else { 0.0 };
-        if step_s <= self.reach_s(f64::from(rows) * mean_s) + missed {
+        let (rows, missed_s) = match &self.packets {
+            Some(_) => (self.stamp.rows.max(self.rows_before), mean_s),
+            None => (1, 0.0),
+        };
+        if step_s <= self.reach_s(f64::from(rows) * mean_s) + missed_s {
             return 0;
         }
         ((step_s / mean_s).round() as u64).saturating_sub(rows.into())

@@ -383,7 +383,7 @@ impl Sequence {
         if step_s > 0.0 {
             self.gap_rows = 0;
         } else {
-            self.counts.shared += u64::from(self.period.is_packed());
+            self.counts.shared += u64::from(self.period.is_packet());
         }
         if !self.counted {
             // A row that shares its stamp may explain the step to it.
