@@ -597,6 +597,21 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
         .expect(0)
         .says("middle.csv: there is no contact from ")
         .says("and the finger presses");
+    // Something knocks at the nail for four seconds of two minutes.
+    dir.write(
+        "knocked.csv",
+        altered(120.0, "time_s,P1,Fz_N", |t_s, light, force| match t_s {
+            40.0..44.0 => format!("{t_s},{},0\n", 1.0 + 0.5 * f64::from(u8::from((2.0 * t_s).fract() < 0.5))),
+            _ => format!("{t_s},{light},{force}\n"),
+        }),
+    );
+    judge(&dir, "knocked.csv", &[])
+        .expect(0)
+        .says("knocked.csv: 8 of 8 false switches come from 40.0 to 43.5 s, more than by chance");
+    let knocked = dir.parsed("ev-knocked.csv/switch.json");
+    let [dispersion, low] = ["dispersion", "false_per_hour_low"].map(|key| knocked[key].as_f64().unwrap());
+    // One event, not eight: 0.025 of it.
+    assert!((dispersion - 8.0).abs() <= 1e-9 && low < 0.03 * 240.0, "{dispersion} {low}");
     // Rows that the model can't answer.
     dir.write("lit.csv", altered(20.0, "time_s,led,P1,Fz_N", |t_s, light, force| format!("{t_s},1,{light},{force}\n")));
     judge(&dir, "lit.csv", &[]).expect(2).says("lit.csv: none of its 2000 rows has a prediction");

@@ -1,7 +1,7 @@
 //! What makes it doubtful that a recording's contact is what the finger did: it is the other way round, of another
 //! recording, on another clock, or its switch sticks.
 
-use lunula_live::switch::{Contact, Fate, Lag, Match, Trace, any_contact};
+use lunula_live::switch::{Contact, Fate, Lag, Match, Trace, any_contact, false_by_parts, heaping};
 
 use crate::median::median_of;
 
@@ -163,6 +163,27 @@ fn open(trace: &Trace, found: &[Match]) -> Option<String> {
              what measures contact work? Where it did not, leave contact empty"
         )
     })
+}
+
+/// That false switches of a recording come in heaps.
+pub(super) fn heaped(names: &[String], traces: &[Trace], found: &[Vec<Match>]) -> Vec<String> {
+    let of = |((name, trace), found): ((&String, &Trace), &Vec<Match>)| {
+        let parts = false_by_parts(&trace.contacts, found);
+        let wider = heaping(&parts, traces.len());
+        let (at, &most) = parts.iter().enumerate().max_by_key(|(_, count)| **count).filter(|_| wider > 1.0)?;
+        let before: u64 = parts[..at].iter().sum();
+        let all: Vec<f64> = found.iter().filter(|one| one.is_false()).map(|one| one.press_s).collect();
+        let within = &all[before as usize..(before + most) as usize];
+        Some(format!(
+            "{name}: {most} of {} false switches come from {:.1} to {:.1} s, more than by chance (dispersion over time \
+             {wider:.1}): they are no independent events, and the interval is wider for it; look at what happened \
+             there, and record longer",
+            all.len(),
+            within.first()?,
+            within.last()?
+        ))
+    };
+    names.iter().zip(traces).zip(found).filter_map(of).collect()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use std::path::Path;
 use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
 use serde::Serialize;
 
-use super::doubts::elsewhere;
+use super::doubts::{elsewhere, heaped};
 use super::figures::{WIDTH, delays_chart};
 use super::flattery::flattery;
 use super::options::ContactOptions;
@@ -82,6 +82,7 @@ pub fn evaluate_switch(
     note(&mut report, &all, inputs, options, led);
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
     report.warnings.extend(elsewhere(&read, &traces, &found));
+    report.warnings.extend(heaped(&read, &traces, &found));
     write_presses(&staging, &read, &found)?;
     if *figures {
         let draw = |png: &Path, svg: &Path| draw_charts(&[delays_chart(&found)], WIDTH, png, svg);

@@ -8,6 +8,8 @@
 
 use serde::Serialize;
 
+use super::poisson::PARTS;
+
 /// Contacts closer than this are one, seconds: assumed, less than a finger takes to let go and touch again.
 const MERGED_S: f64 = 0.1;
 /// Rows further apart have a gap between them, seconds: assumed.
@@ -107,6 +109,22 @@ impl Contacts {
     pub fn knows(&self, time_s: f64) -> bool {
         let after = self.known.partition_point(|known| known[0] <= time_s);
         after > 0 && time_s <= self.known[after - 1][1]
+    }
+
+    /// How many of `times_s`, ascending, are in each of equal parts of the time of which contact is known.
+    #[must_use]
+    pub fn by_parts(&self, times_s: impl IntoIterator<Item = f64>) -> [u64; PARTS] {
+        let mut parts = [0; PARTS];
+        let (mut known, mut before_s) = (self.known.iter().peekable(), 0.0);
+        for time_s in times_s {
+            while let Some([from_s, to_s]) = known.next_if(|known| known[1] < time_s) {
+                before_s += to_s - from_s;
+            }
+            let since_s = known.peek().map_or(0.0, |known| (time_s - known[0]).max(0.0));
+            let part = ((before_s + since_s) / self.seconds * PARTS as f64) as usize;
+            parts[part.min(PARTS - 1)] += 1;
+        }
+        parts
     }
 
     /// Whether the finger touches at a time; none where it is not known.

@@ -5,8 +5,8 @@
 //! its contact has one already. A press that begins while contact is not known is neither true nor false. A contact
 //! without a press is **missed**. **Delays** are from the contact's first row to the press and from the first row after
 //! it to the release, so they hold half a row's period of bias at most. The rate is that of false presses in all the
-//! time of which contact is known, touching or not; its interval is Garwood's, wider where recordings differ more than
-//! by chance ([`rate_of`]).
+//! time of which contact is known, touching or not; its interval is Garwood's, wider where recordings, or parts of
+//! one, differ more than by chance ([`rate_of`]).
 
 use serde::Serialize;
 use statrs::function::beta::beta_reg;
@@ -15,7 +15,7 @@ use super::config::SwitchConfig;
 use super::contact::{Contact, Contacts};
 use super::event::{Reason, Turn};
 use super::machine::{Reading, Switch};
-use super::poisson::{Rate, dispersion, rate_of};
+use super::poisson::{PARTS, Rate, dispersion, heaping, rate_of};
 
 /// How long after a contact's end a press may still be its own, seconds: assumed; blood follows within 0.4 s (4.3).
 const LATE_S: f64 = 0.5;
@@ -72,7 +72,7 @@ pub struct Evaluation {
     /// An hour; none without time.
     #[serde(flatten)]
     pub rate: Option<FalseRate>,
-    /// How much more recordings differ in it than chance alone makes them; 1: not more.
+    /// How much more recordings, or parts of one, differ in it than chance alone makes them; 1: not more.
     pub dispersion: f64,
     /// Contacts without a press.
     pub missed: usize,
@@ -118,6 +118,8 @@ pub(super) struct Tally {
     pub(super) unknown_s: f64,
     /// False switches and hours of each recording.
     pub(super) recordings: Vec<(u64, f64)>,
+    /// False switches in each part of each.
+    pub(super) parts: Vec<[u64; PARTS]>,
     pub(super) presses: usize,
     pub(super) decisions: usize,
     pub(super) false_switches: u64,
@@ -157,6 +159,14 @@ pub struct Match {
     pub fate: Fate,
 }
 
+impl Match {
+    /// Whether it counts as a false switch.
+    #[must_use]
+    pub fn is_false(&self) -> bool {
+        matches!(self.fate, Fate::False | Fate::Repeated)
+    }
+}
+
 /// A switch's presses over a recording, where contact is known, and the contacts that it missed, in the order of time.
 #[must_use]
 pub fn matches(config: &SwitchConfig, trace: &Trace) -> Vec<Match> {
@@ -184,7 +194,9 @@ impl Tally {
         tally.cut_off = contacts.contacts.len() - tally.presses;
         tally.decisions = presses.len();
         tally.not_judged = presses.iter().filter(|press| !contacts.knows(press[0])).count();
-        for Match { press_s, release_s, contact, fate } in compare(&presses, contacts) {
+        let found = compare(&presses, contacts);
+        tally.parts = vec![false_by_parts(contacts, &found)];
+        for Match { press_s, release_s, contact, fate } in found {
             match fate {
                 Fate::True => {
                     let start_s = contact.filter(|one| one.start_known).map(|one| one.start_s);
@@ -208,6 +220,7 @@ impl Tally {
         self.seconds += other.seconds;
         self.unknown_s += other.unknown_s;
         self.recordings.extend(&other.recordings);
+        self.parts.extend(&other.parts);
         self.presses += other.presses;
         self.decisions += other.decisions;
         self.false_switches += other.false_switches;
@@ -224,7 +237,16 @@ impl Tally {
         self.seconds / 3600.0
     }
 
+    /// How much more recordings, or parts of one, differ than by chance: of all false switches each recording's share
+    /// is as heaped as it is.
+    fn dispersion(&self) -> f64 {
+        let heaped = |parts: &[u64; PARTS]| parts.iter().sum::<u64>() as f64 * heaping(parts, self.parts.len());
+        let heaped = self.parts.iter().map(heaped).sum::<f64>() / (self.false_switches as f64).max(1.0);
+        dispersion(&self.recordings).max(heaped)
+    }
+
     pub(super) fn evaluation(&self) -> Evaluation {
+        let dispersion = self.dispersion();
         Evaluation {
             hours: self.hours(),
             unknown_s: self.unknown_s,
@@ -234,8 +256,8 @@ impl Tally {
             repeated: self.repeated,
             not_judged: self.not_judged,
             cut_off: self.cut_off,
-            rate: rate_of(&self.recordings).map(FalseRate::from),
-            dispersion: dispersion(&self.recordings),
+            rate: rate_of(&self.recordings, dispersion).map(FalseRate::from),
+            dispersion,
             missed: self.missed,
             delay_on_s: Quartiles::of(&self.delays_on_s),
             delay_off_s: Quartiles::of(&self.delays_off_s),
@@ -264,6 +286,12 @@ fn presses(config: &SwitchConfig, trace: &Trace, let_go: &mut u64) -> Vec<[f64; 
         }
     }
     presses
+}
+
+/// How many of a recording's presses are false in each part of its time.
+#[must_use]
+pub fn false_by_parts(contacts: &Contacts, found: &[Match]) -> [u64; PARTS] {
+    contacts.by_parts(found.iter().filter(|one| one.is_false()).map(|one| one.press_s))
 }
 
 /// Gives each press its contact, where contact is known.

@@ -22,10 +22,10 @@ mod tune;
 
 pub use config::{ConfigFault, Outside, Place, SwitchConfig, compared};
 pub use contact::{Contact, Contacts, LONGEST_GAP_S};
-pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, matches};
+pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, false_by_parts, matches};
 pub use event::{Reason, SwitchEvent, Turn};
 pub use lag::Lag;
 pub use machine::{Reading, Switch};
-pub use poisson::{Rate, dispersion, rate_of, rate_per_hour};
+pub use poisson::{PARTS, Rate, dispersion, heaping, rate_of, rate_per_hour};
 pub use rice::{NoiseRate, crossings_per_hour};
 pub use tune::{Candidate, Goal, TuneFault, Tuned, any_contact, tune};
