@@ -15,8 +15,9 @@ const STEPS: usize = 32;
 /// The mean is of so many steps at most, then older ones count half.
 const MOST_STEPS: f64 = 1024.0;
 
-/// A longer step holds lost rows, in periods.
-const LOST_PERIODS: f64 = 1.5;
+/// A longer step holds lost rows, in periods: one and a half, and as much more as the mean may be off, since that of a
+/// late row among 500 a second in whole milliseconds is just that.
+const LOST_PERIODS: f64 = 1.52;
 
 /// Rows may be later by so many ticks of a coarse clock; the tenth is for a mean of 32 steps, known to 1/32 tick.
 const TICKS: f64 = 1.1;
@@ -29,8 +30,8 @@ const SAME_PART: f64 = 0.01;
 /// (*assumed*).
 const OTHER_PART: f64 = 0.1;
 
-/// After a row shared its tick, a clock does not tick with the rows for so many blocks of 32 steps: as many as the mean
-/// is of.
+/// After a step that is shorter than the others by a tick, as of a row that shares one, a clock does not tick with the
+/// rows for so many blocks of 32 steps: as many as the mean is of.
 const UNEVEN_BLOCKS: u32 = 32;
 
 /// Rows of one stamp share its tick where the step before it has so many ticks at most: where rows come as fast as
@@ -107,7 +108,6 @@ impl Period {
             return;
         }
         if !self.is_packet() {
-            (self.even_s, self.uneven_blocks) = (None, UNEVEN_BLOCKS);
             self.add(0.0);
         } else {
             // Its step is that of all its rows.
@@ -132,6 +132,10 @@ impl Period {
     }
 
     fn add(&mut self, step_s: f64) {
+        // Lost rows make none shorter.
+        if self.mean_s.is_some_and(|mean_s| step_s < mean_s - 0.5 * self.resolution_s) {
+            (self.even_s, self.uneven_blocks) = (None, UNEVEN_BLOCKS);
+        }
         self.steps_s[self.filled] = step_s;
         self.filled += 1;
         // The first mean early, later ones of whole blocks.
