@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use lunula_live::skill::{Contact, Figures, Force, noise_of_rate};
+use lunula_live::skill::{Contact, Figures, Force, noise_of_rate, noise_of_white};
 use rayon::prelude::*;
 
 use super::analysis::{self, Reference};
@@ -158,7 +158,9 @@ fn analysed(
         for ((finger, touched), own) in trial.fingers.iter().zip(&touched).zip(&figures.fingers) {
             let noise_n = noise_n(&finger.force.force_n, options.touch_n);
             let noisy = noise_n.and_then(|sd_n| noisy(sd_n, options.touch_n));
-            let unsmooth = noise_n.and_then(|sd_n| unsmooth(&finger.force, &own.figures, sd_n));
+            let white = || Some(noise_of_white(noise_n?, 1.0 / finger.force.period_s()?));
+            let noise = noise_of_rate(&finger.force, touched).or_else(white);
+            let unsmooth = noise.and_then(|rate| unsmooth(&own.figures, rate));
             let merged = merged(&finger.force, touched);
             let doubts = finger.doubts.iter().chain(&noisy).chain(&unsmooth).chain(&merged);
             warnings.extend(doubts.map(|doubt| format!("{name}: trial {}: {}: {doubt}", trial.trial, finger.name)));
@@ -204,19 +206,19 @@ fn noisy(sd_n: f64, touch_n: f64) -> Option<String> {
     })
 }
 
-/// Noise of the force's rate, of its fastest in a press, above which smoothness is that of the noise too: of 320
-/// generated courses (four shapes, 0.5 to 5 N, 50 to 1000 rows a second, white noise of 0.001 to 0.04 N) it was at most
-/// 10 % off in the 231 below this, and up to 42 % above.
-const UNSMOOTH: f64 = 0.06;
+/// Noise of the force's rate, of its fastest in a press, above which smoothness is that of the noise too: of generated
+/// trials (five shapes, 0.5 to 5 N, 100 and 250 rows a second, noise of 0.001 to 0.05 N) it was at most 8 % off in the
+/// 1215 below this (white noise, tremors of 5, 9.5 and 12 Hz, bands of 3 to 15 and 7 to 12 Hz; 11 % with noise of 0.5
+/// to 3 Hz), and up to 16 % at a third more.
+const UNSMOOTH: f64 = 0.045;
 
-/// That noise decides how smooth presses are.
-fn unsmooth(force: &Force, figures: &Figures, sd_n: f64) -> Option<String> {
-    let rate = noise_of_rate(sd_n, 1.0 / force.period_s()?);
+/// That noise at rest, whose rate is this, decides how smooth presses are.
+fn unsmooth(figures: &Figures, rate: f64) -> Option<String> {
     let fastest = figures.fastest_n_per_s.filter(|fastest| rate > UNSMOOTH * fastest)?;
     Some(format!(
-        "noise of {sd_n:.3} N (SD at rest) changes the force by {rate:.1} N/s, and presses change it by {fastest:.1} \
+        "noise at rest, up to 15 Hz, changes the force by {rate:.2} N/s (RMS), and presses change it by {fastest:.1} \
          N/s at the fastest: smoothness is in part that of the noise; compare it with that of equal presses and noise \
-         only, or record more rows a second"
+         only; where the noise is the sensor's, record more rows a second"
     ))
 }
 

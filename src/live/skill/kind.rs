@@ -24,7 +24,7 @@ impl Job for SkillOptions {
         ],
         &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::pictures("")],
     )
-    .revision(10);
+    .revision(11);
 
     fn checked(self) -> Result<Self, OptionFault> {
         let faults = self.faults();

@@ -124,7 +124,7 @@ fn rises<'a>(force: &'a Force, contact: &Contact) -> impl Iterator<Item = f64> +
 /// movement. Thresholds cut more of a weak press: of one course, presses of 0.5 N were 0.77 less smooth than of 20 N.
 const ONSET: f64 = 0.05;
 /// It is looked for so long before and after the contact, seconds (assumed).
-const AROUND_S: f64 = 0.3;
+pub(super) const AROUND_S: f64 = 0.3;
 
 /// The smoothness of contact `k`, and its fastest change, newtons a second.
 fn smoothness(force: &Force, contacts: &[Contact], k: usize, longest_s: f64) -> Option<[f64; 2]> {
@@ -135,24 +135,8 @@ fn smoothness(force: &Force, contacts: &[Contact], k: usize, longest_s: f64) -> 
         force_n: rows.clone().map(|row| known_force(force, row)).collect::<Option<_>>()?,
         lifted: Vec::new(),
     };
-    let period_s = within.period_s()?;
-    let (from_s, to_s) = (within.time_s[0], within.time_s[within.time_s.len() - 1]);
-    let samples = whole_steps(to_s - from_s, period_s) + 1.0;
-    if samples > MOST_SAMPLES as f64 {
-        return None;
-    }
-    let mut row = 0;
-    let even = (0..samples as usize).map(|k| {
-        let time_s = (from_s + k as f64 * period_s).min(to_s);
-        while row + 2 < within.time_s.len() && within.time_s[row + 1] < time_s {
-            row += 1;
-        }
-        let (before_s, after_s) = (within.time_s[row], within.time_s[row + 1]);
-        let share = (time_s - before_s) / (after_s - before_s);
-        within.force_n[row] + share * (within.force_n[row + 1] - within.force_n[row])
-    });
-    let even: Vec<f64> = even.collect();
-    let rate: Vec<f64> = even.windows(2).map(|pair| (pair[1] - pair[0]) / period_s).collect();
+    let (rate, period_s) = even_rate(&within)?;
+    let from_s = within.time_s[0];
     let speed: Vec<f64> = low_passed(&rate, 1.0 / period_s).iter().map(|rate| rate.abs()).collect();
     let step = |row: usize| (whole_steps(force.time_s[row] - from_s, period_s) as usize).min(speed.len());
     let (mut begin, mut end) = (step(own.start), step(own.end - 1));
@@ -164,6 +148,28 @@ fn smoothness(force: &Force, contacts: &[Contact], k: usize, longest_s: f64) -> 
         end += 1;
     }
     Some([spectral_arc_length(&speed[begin..end], 1.0 / period_s)?, fastest])
+}
+
+/// The rate of a force that is known throughout at even times, newtons a second, and the step between them, seconds.
+pub(super) fn even_rate(force: &Force) -> Option<(Vec<f64>, f64)> {
+    let period_s = force.period_s()?;
+    let (from_s, to_s) = (force.time_s[0], force.time_s[force.time_s.len() - 1]);
+    let samples = whole_steps(to_s - from_s, period_s) + 1.0;
+    if samples > MOST_SAMPLES as f64 {
+        return None;
+    }
+    let mut row = 0;
+    let even = (0..samples as usize).map(|k| {
+        let time_s = (from_s + k as f64 * period_s).min(to_s);
+        while row + 2 < force.time_s.len() && force.time_s[row + 1] < time_s {
+            row += 1;
+        }
+        let (before_s, after_s) = (force.time_s[row], force.time_s[row + 1]);
+        let share = (time_s - before_s) / (after_s - before_s);
+        force.force_n[row] + share * (force.force_n[row + 1] - force.force_n[row])
+    });
+    let even: Vec<f64> = even.collect();
+    Some((even.windows(2).map(|pair| (pair[1] - pair[0]) / period_s).collect(), period_s))
 }
 
 /// The rows of contact `k` and those around it of which the force is known, without a gap, up to its neighbours.

@@ -10,11 +10,13 @@
 mod contact;
 mod figures;
 mod force;
+mod rest;
 mod smooth;
 mod warp;
 
 pub use contact::{Contact, Thresholds, contacts};
 pub use figures::{Figures, ranks};
 pub use force::Force;
-pub use smooth::{MOST_SAMPLES, noise_of_rate, spectral_arc_length};
+pub use rest::noise_of_rate;
+pub use smooth::{MOST_SAMPLES, noise_of_white, spectral_arc_length};
 pub use warp::{MOST_POINTS, distance, resampled};

@@ -54,7 +54,7 @@ pub(super) fn low_passed(rate: &[f64], rate_hz: f64) -> Vec<f64> {
 /// The standard deviation that white noise of `sd` in each of `rate_hz` values a second leaves in their rate after the
 /// low pass, a second.
 #[must_use]
-pub fn noise_of_rate(sd: f64, rate_hz: f64) -> f64 {
+pub fn noise_of_white(sd: f64, rate_hz: f64) -> f64 {
     let band_hz = LOW_PASS_HZ.min(0.5 * rate_hz);
     sd * std::f64::consts::TAU * band_hz / 3f64.sqrt() * (2.0 * band_hz / rate_hz).sqrt()
 }
@@ -128,7 +128,7 @@ mod tests {
             let rate: Vec<f64> = noise.windows(2).map(|pair| (pair[1] - pair[0]) * rate_hz).collect();
             let left = low_passed(&rate, rate_hz);
             let sd = (left.iter().map(|value| value * value).sum::<f64>() / left.len() as f64).sqrt();
-            let share = sd / noise_of_rate(1.0, rate_hz);
+            let share = sd / noise_of_white(1.0, rate_hz);
             println!("{rate_hz}: {share:.3}");
             assert!((0.7..=1.1).contains(&share), "{rate_hz}: {share}");
         }
