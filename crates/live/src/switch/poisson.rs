@@ -69,6 +69,9 @@ pub fn heaping(parts: &[u64; PARTS], recordings: usize) -> f64 {
     }
     let (expected, others) = (count as f64 / PARTS as f64, (PARTS - 1) as f64);
     let squares: f64 = parts.iter().map(|&one| (one as f64 - expected).powi(2) / expected).sum();
+    if squares <= others {
+        return 1.0;
+    }
     let chance = gamma_ur(0.5 * others, 0.5 * squares) * recordings as f64;
     if chance < BY_CHANCE { squares / others } else { 1.0 }
 }
@@ -176,7 +179,8 @@ mod tests {
         }
         println!("{exact_held} and {held} of {draws}");
         assert!(10 * exact_held <= 6 * draws && 100 * held >= 85 * draws, "{exact_held}, {held}");
-        // One heap of three recordings.
+        // As even as can be, and one heap of three recordings.
+        assert_eq!(heaping(&[2; PARTS], 1), 1.0);
         let mut heap = [0; PARTS];
         heap[7] = 48;
         assert!((heaping(&heap, 3) - 48.0).abs() <= 1e-9);
