@@ -201,7 +201,7 @@ pub(super) fn warnings(fit: &Fit, views: &[View], covered: f64, board: BoardSize
     if wider.abs() > SQUARE.max(SQUARE_SDS * sd) {
         let [by_width, by_height] = if wider > 0.0 { ["larger", "shorter"] } else { ["smaller", "longer"] };
         warnings.push(format!(
-            "fx is {:.2} % {by_width} than fy (standard error {:.2}), and nearly all cameras have square pixels: is \
+            "fx is {:.2} % {by_width} than fy (standard error {:.3}), and nearly all cameras have square pixels: is \
              the board {by_height} from row to row than from column to column by as much (measure both sides of the \
              print), or were the pictures stretched?",
             100.0 * wider.abs(),

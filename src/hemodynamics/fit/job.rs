@@ -246,6 +246,7 @@ fn in_words(why: &str, recordings: &[ReadRecording]) -> String {
 
 /// What has to be known before the values are used.
 fn warnings(result: &FitResult, recordings: &[ReadRecording], of_parts: Vec<String>) -> Vec<String> {
+    let differ = !of_parts.is_empty();
     let mut warnings = of_parts;
     let (words, converged) = stopped(result.stop);
     if !converged {
@@ -274,7 +275,8 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], of_parts: Vec<Stri
     }
     warnings.extend(signs::of_scalings(result, recordings));
     warnings.extend(recordings.iter().zip(&result.delays).filter_map(|(read, delay)| delayed((*delay)?, &read.name)));
-    if !result.delays.iter().flatten().any(Delay::is_clear) {
+    // What explains it is named already.
+    if !differ && !result.delays.iter().flatten().any(Delay::is_clear) {
         warnings.extend(result.beside.and_then(part_beside));
     }
     let files = recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()));
