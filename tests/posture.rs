@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::util::{Answer, Dir, known};
+use crate::util::{Answer, Dir, Json, known};
 
 type Rows = Vec<BTreeMap<String, String>>;
 
@@ -161,6 +161,25 @@ fn a_rolling_shutter_is_undone_also_where_the_picture_is_turned() {
             assert!(undone <= bound && left > 2.0 * undone, "{rotate} {joint}: {undone}, left {left} degrees RMS");
         }
     }
+}
+
+#[test]
+fn how_long_a_shutter_rolls_is_measured_and_warned_of_where_the_file_does_not_say() {
+    let dir = scene_of("5", &["--trajectory", "random", "--readout", "16"]);
+    let measured = || {
+        let answer = posture(&dir, &["--no-figures", "--json"]).expect(0);
+        let all: Vec<f64> = answer.json()["readout_ms"].list().iter().map(Json::number).collect();
+        (all[0], all[1], answer.stderr.contains("as under a rolling shutter") || answer.stderr.contains("does not fit"))
+    };
+    let (ms, sd_ms, warned) = measured();
+    assert!((ms - 16.0).abs() <= 2.0 && sd_ms <= 2.0 && !warned, "{ms} {sd_ms} {warned}");
+    let file = dir.text("scene/markers.toml");
+    dir.write("scene/markers.toml", file.replace("readout_ms = 16.0\n", ""));
+    let (ms, sd_ms, warned) = measured();
+    assert!((ms - 16.0).abs() <= 2.0 && sd_ms <= 2.0 && warned, "{ms} {sd_ms} {warned}");
+    dir.write("scene/markers.toml", file.replace("readout_ms = 16.0\n", "readout_ms = 30\n"));
+    let (ms, _, warned) = measured();
+    assert!((ms - 16.0).abs() <= 2.0 && warned, "{ms} {warned}");
 }
 
 #[test]

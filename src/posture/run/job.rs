@@ -109,6 +109,7 @@ pub fn run(
         joints: results.joint_reports(),
         coupling: results.coupling(),
         clock: clock.map(|clock| clock.report),
+        readout_ms: rolling.readout_ms(),
         searches: SearchReport {
             surveyed_frames: survey.frames as u64,
             neighbourhoods: search.near_searches,

@@ -29,6 +29,9 @@ pub struct PostureFigures {
     pub coupling: Option<CouplingReport>,
     /// The clock in the picture; none where it was not read.
     pub clock: Option<ClockReport>,
+    /// How long a rolling shutter takes, by segments that move along themselves, and its standard error, milliseconds;
+    /// none where no segment shows it.
+    pub readout_ms: Option<[f64; 2]>,
     /// What was searched.
     pub searches: SearchReport,
     /// Threads that decoded.

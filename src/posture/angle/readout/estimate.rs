@@ -136,10 +136,15 @@ impl Rolling {
         (stretches >= FEWEST_STRETCHES).then(|| [estimate_s, (squares * (count - 1.0) / count).sqrt()])
     }
 
+    /// How long the rows take in all, and its standard error, milliseconds.
+    pub(in crate::posture) fn readout_ms(&self) -> Option<[f64; 2]> {
+        self.estimate_s().map(|[more_s, sd_s]| [1e3 * (self.given_s + more_s), 1e3 * sd_s])
+    }
+
     /// What to say of it once all frames are through.
     pub(in crate::posture) fn doubt(&self) -> Option<String> {
-        let [ms, sd_ms] = self.estimate_s()?.map(|seconds| 1e3 * seconds);
-        let given_ms = 1e3 * self.given_s;
+        let ([all_ms, sd_ms], given_ms) = (self.readout_ms()?, 1e3 * self.given_s);
+        let ms = all_ms - given_ms;
         (ms.abs() > SURE_MS.max(SURE_SDS * sd_ms)).then(|| match self.given_s {
             0.0 if ms > 0.0 => format!(
                 "segments change their lengths with their speed as under a rolling shutter whose last row is taken \
@@ -156,7 +161,7 @@ impl Rolling {
             _ => format!(
                 "readout_ms = {given_ms} of the marker file does not fit: segments change their lengths with their \
                  speed as if it were about {:.0} (standard error {sd_ms:.1})",
-                given_ms + ms
+                all_ms
             ),
         })
     }
