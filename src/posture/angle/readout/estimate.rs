@@ -117,19 +117,19 @@ impl Rolling {
     fn estimate_s(&self) -> Option<[f64; 2]> {
         let stretches = self.segments.iter().map(|segment| segment.stretches.len()).max()?;
         // The segments weigh by how well each keeps its length.
-        let whole: Vec<[f64; 2]> = self.segments.iter().map(|segment| segment.effect(None)).collect();
         let weights: Vec<f64> =
             self.segments.iter().map(|segment| 1.0 / segment.left_px2().max(f64::MIN_POSITIVE)).collect();
-        let pooled = |effects: &[[f64; 2]]| {
-            let sums = effects.iter().zip(&weights).map(|(effect, weight)| effect.map(|sum| weight * sum));
-            let [both, own] = sums.fold([0.0; 2], |all, one| [all[0] + one[0], all[1] + one[1]]);
+        let pooled = |without: Option<usize>| {
+            let [mut both, mut own] = [0.0; 2];
+            for (segment, weight) in self.segments.iter().zip(&weights) {
+                let [[squares, product], _] = segment.rest(without);
+                both += weight * product;
+                own += weight * squares;
+            }
             Some(both / own).filter(|seconds| seconds.is_finite())
         };
-        let estimate_s = pooled(&whole)?;
-        let without = |stretch: usize| -> Option<f64> {
-            pooled(&self.segments.iter().map(|segment| segment.effect(Some(stretch))).collect::<Vec<_>>())
-        };
-        let left_out_s: Vec<f64> = (0..stretches).map(without).collect::<Option<_>>()?;
+        let estimate_s = pooled(None)?;
+        let left_out_s: Vec<f64> = (0..stretches).map(|stretch| pooled(Some(stretch))).collect::<Option<_>>()?;
         let count = left_out_s.len() as f64;
         let mean_s = left_out_s.iter().sum::<f64>() / count;
         let squares: f64 = left_out_s.iter().map(|one_s| (one_s - mean_s).powi(2)).sum();
@@ -183,13 +183,6 @@ impl Seen {
 }
 
 impl Segment {
-    /// Products of what a second of read-out time changes with the length and with itself, less what directions
-    /// explain; without one of the stretches.
-    fn effect(&self, without: Option<usize>) -> [f64; 2] {
-        let [[own, both], _] = self.rest(without);
-        [both, own]
-    }
-
     /// The variance of the length that neither explains, pixels squared.
     fn left_px2(&self) -> f64 {
         let [[own, both], [_, length]] = self.rest(None);
@@ -197,6 +190,8 @@ impl Segment {
         (length - if own > 0.0 { both * both / own } else { 0.0 }) / count
     }
 
+    /// Products of what a second of read-out time changes and of the length, less what directions explain; without one
+    /// of the stretches.
     fn rest(&self, without: Option<usize>) -> [[f64; 2]; 2] {
         let kept = self.stretches.iter().enumerate().filter(|(stretch, _)| Some(*stretch) != without);
         let sums: Sums = kept.map(|(_, sums)| sums).sum();
