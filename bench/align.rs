@@ -6,7 +6,8 @@
 
 mod util;
 
-use lunula::phantom::log::{LogOptions, LogScene, write};
+use lunula::phantom::Generated as _;
+use lunula::phantom::log::LogOptions;
 use lunula::table::{Column, Table, TableWriter, Value};
 use util::{Run, compare, seconds};
 
@@ -18,7 +19,7 @@ fn main() {
     let place = |name: &str| folder.path().join(name).display().to_string();
     let options = LogOptions { seconds: SECONDS, rate_hz: 100.0, ..LogOptions::default() };
     let (offset_s, trajectory) = (options.clock_offset_s, options.trajectory.clone());
-    write(&LogScene::new(options).expect("a scene"), folder.path()).expect("a log");
+    options.write(folder.path()).expect("a log");
     let joints = folder.path().join("joints.csv");
     let names = ["J1_deg", "J2_deg", "J3_deg"];
     let columns = ["time_s", "clock_s"].into_iter().chain(names).map(|name| Column::rounded(name, 6)).collect();

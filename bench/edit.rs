@@ -20,7 +20,8 @@ use desk::Desk;
 use lunula::labelme::{LabelMe, Shape, to_labelme};
 use lunula::nail::Outline;
 use lunula::outlines::Pressed;
-use lunula::phantom::photos::{LightKind, PhotoOptions, write};
+use lunula::phantom::Generated as _;
+use lunula::phantom::photos::{LightKind, PhotoOptions};
 use lunula::photo::outline::{Drawn, outlines_from_mask, read_annotated};
 use lunula::photo::{PhotoSet, Photograph};
 use rand::{RngExt, SeedableRng};
@@ -62,7 +63,7 @@ fn main() {
 fn phantoms(light: LightKind, [width, height]: [u32; 2], subjects: u32) -> (tempfile::TempDir, Truth) {
     let home = tempfile::tempdir().expect("a temporary folder");
     let options = PhotoOptions { light, subjects, width, height, truth_normalized: false, ..PhotoOptions::default() };
-    write(&options, home.path()).expect("synthetic photographs");
+    options.write(home.path()).expect("synthetic photographs");
     let set = PhotoSet::open(&home.path().join("photos"), &[]).expect("photographs");
     let mut truth = Truth::new();
     for photo in &set.photos {

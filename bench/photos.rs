@@ -10,7 +10,8 @@ mod util;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lunula::phantom::photos::{FileFormat, LightKind, PhotoOptions, write};
+use lunula::phantom::Generated as _;
+use lunula::phantom::photos::{FileFormat, LightKind, PhotoOptions};
 use lunula::photo::{PhotoSet, Photograph};
 use rayon::prelude::*;
 use util::{compare, seconds};
@@ -26,7 +27,7 @@ fn main() {
     }
     let scene = tempfile::tempdir().expect("a temporary folder");
     let options = PhotoOptions { light: LightKind::Chamber, truth_normalized: false, ..PhotoOptions::default() };
-    write(&options, scene.path()).expect("synthetic photographs");
+    options.write(scene.path()).expect("synthetic photographs");
     let set = scene.path().join("photos").display().to_string();
     let out = scene.path().join("out").display().to_string();
     let myself = std::env::current_exe().expect("this program's path").display().to_string();
@@ -58,7 +59,7 @@ fn main() {
     let ratios = compare(&runs, ROUNDS, new_folder);
     println!("lunula photos takes {:.2} times only decoding", ratios[1]);
     let jpeg = tempfile::tempdir().expect("a temporary folder");
-    write(&PhotoOptions { format: FileFormat::Jpg, ..options }, jpeg.path()).expect("synthetic photographs");
+    PhotoOptions { format: FileFormat::Jpg, ..options }.write(jpeg.path()).expect("synthetic photographs");
     let set = jpeg.path().join("photos").display().to_string();
     let lunula = vec![env!("CARGO_BIN_EXE_lunula"), "photos", &set, "--out", &out, "--quiet"];
     println!("the same as JPEG:");

@@ -6,8 +6,9 @@
 
 mod util;
 
+use lunula::phantom::Generated as _;
 use lunula::phantom::screen::Clock;
-use lunula::phantom::video::{Preset, Scene, VideoOptions, write};
+use lunula::phantom::video::{Preset, VideoOptions};
 use util::{DECODE, Run, compare, decodes_only, seconds};
 
 const ROUNDS: usize = 5;
@@ -21,7 +22,7 @@ fn main() {
     let clock = Some(Clock::default());
     let options = VideoOptions { seconds: SECONDS, clock, ..VideoOptions::new(Preset::Clean) };
     let frames = options.frames();
-    write(&Scene::new(options).expect("a scene"), folder.path()).expect("a synthetic video");
+    options.write(folder.path()).expect("a synthetic video");
     let place = |name: &str| folder.path().join(name).display().to_string();
     let (video, markers, out) = (place("video.mp4"), place("markers.toml"), place("joints.csv"));
     let myself = std::env::current_exe().expect("this program's path").display().to_string();

@@ -4,8 +4,9 @@
 use std::collections::BTreeMap;
 
 use image::{Rgb, RgbImage, Rgba};
+use lunula::phantom::Generated as _;
 use lunula::phantom::nail::{NailScene, Pose};
-use lunula::phantom::photos::{LightKind, PhotoOptions, write};
+use lunula::phantom::photos::{LightKind, PhotoOptions};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -75,7 +76,7 @@ fn contrasts_of_phantoms_are_those_of_their_spectra() {
     let poses = [Pose::Normal, Pose::LateralNegative, Pose::Extension];
     let set = PhotoOptions { light: LightKind::Chamber, noise_sd: 2.0, ..small_set(6, &poses) };
     let set = PhotoOptions { width: 480, height: 360, ..set };
-    write(&set, &dir.path("set")).expect("synthetic photographs");
+    set.write(&dir.path("set")).expect("synthetic photographs");
     let report = dir.lunula(&["photos", "set/photos", "--out", "out", "--channels", "--json"]).expect(0).json();
     let rows = dir.table("out/channels.csv");
     assert_eq!(rows.len(), 9);
@@ -134,7 +135,7 @@ fn no_channel_is_favoured_where_all_have_the_same_contrast() {
 #[test]
 fn comparing_adds_its_files_and_changes_no_other_whatever_the_threads() {
     let dir = Dir::new();
-    write(&small_set(4, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
+    small_set(4, &[Pose::Nominal, Pose::Flexion]).write(&dir.path("set")).expect("synthetic photographs");
     dir.words("photos set/photos --out plain").expect(0);
     let plain = dir.results_of("plain");
     let one = dir.on_any_threads("photos set/photos --channels --out {out}");

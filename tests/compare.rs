@@ -5,7 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::util::Dir;
 use lunula::job::{Outputs, Watch};
-use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
+use lunula::phantom::Generated as _;
+use lunula::phantom::log::{LogOptions, Protocol};
 use lunula::predictor::PredictorError;
 use lunula::predictor::models::{Kind, Recipe};
 use lunula_thesis::compare::{CompareOptions, CompareReport, Person, compare};
@@ -21,7 +22,7 @@ fn log(dir: &Dir, protocol: Protocol, subject: u32, repetition: u32) -> String {
         trail_s: 0.0,
         ..LogOptions::of(protocol, u64::from(10 * subject + repetition))
     };
-    write(&LogScene::new(options).expect("a scene"), &dir.path(&name)).expect("a log");
+    options.write(&dir.path(&name)).expect("a log");
     name
 }
 

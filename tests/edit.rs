@@ -311,7 +311,7 @@ fn snap_finds_the_border_from_where_the_outline_is() {
         truth_normalized: false,
         ..crate::util::small_set(1, &[lunula::phantom::nail::Pose::Nominal])
     };
-    lunula::phantom::photos::write(&options, &dir.path("scene")).expect("synthetic photographs");
+    lunula::phantom::Generated::write(&options, &dir.path("scene")).expect("synthetic photographs");
     let path = dir.path("scene/photos/nominal/s01.json");
     let mut file = LabelMe::read(&path).expect("LabelMe");
     let truth = Outline::new(&file.shapes[0].points).expect("an outline");

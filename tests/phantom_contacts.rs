@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::util::{Answer, Dir, number};
+use lunula::phantom::Generated as _;
 use lunula::phantom::contacts::{Contact, ContactKind, Contacts};
-use lunula::phantom::log::{LiveLog, LogOptions, LogScene, Protocol, Stamps};
+use lunula::phantom::log::{LiveLog, LogOptions, Protocol, Stamps};
 
 type Table = Vec<BTreeMap<String, String>>;
 
@@ -144,7 +145,7 @@ fn a_stream_sends_what_the_file_holds() {
     ] {
         let mut options = LogOptions { seconds: 60.0, ..LogOptions::of(Protocol::Contacts, 3) };
         change(&mut options);
-        lunula::phantom::log::write(&LogScene::new(options.clone()).unwrap(), &dir.path(name)).unwrap();
+        options.write(&dir.path(name)).unwrap();
         let file = dir.text(&format!("{name}/log.csv"));
         let lines: Vec<&str> = file.lines().collect();
         let log = LiveLog::new(&options, false, None).unwrap();

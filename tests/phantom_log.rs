@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::util::{Answer, Dir, number};
-use lunula::phantom::Error;
 use lunula::phantom::force::{ForceTrajectory, Spiral};
-use lunula::phantom::log::{LogOptions, LogScene, write};
+use lunula::phantom::log::{LogOptions, LogScene};
 use lunula::phantom::sensor::CHANNELS;
 use lunula::phantom::trajectory::Trajectory;
+use lunula::phantom::{Error, Generated as _};
 
 /// Half a step of the converter and of a number's sixth decimal, volts.
 const HALF_STEP_V: f64 = 0.5 * 10.0 / 65_536.0 + 1e-6;
@@ -130,17 +130,15 @@ fn the_exact_angles_label_a_log_without_a_video() {
 #[test]
 fn what_a_folder_holds_of_others_is_left_alone() {
     let dir = Dir::new();
-    let scene = LogScene::new(LogOptions { seconds: 1.0, ..LogOptions::default() }).unwrap();
+    let log = LogOptions { seconds: 1.0, ..LogOptions::default() };
     dir.write("out/log.csv", "mine");
-    assert!(
-        matches!(write(&scene, &dir.path("out")), Err(Error::InTheWay { place, .. }) if place.ends_with("log.csv"))
-    );
+    assert!(matches!(log.write(&dir.path("out")), Err(Error::InTheWay { place, .. }) if place.ends_with("log.csv")));
     assert_eq!(dir.bytes_of("out").len(), 1);
     dir.write("photos/truth/phantom.json", "{}");
-    let photos = write(&scene, &dir.path("photos"));
+    let photos = log.write(&dir.path("photos"));
     assert!(matches!(photos, Err(Error::InTheWay { place, .. }) if place.ends_with("phantom.json")));
     dir.write("file", "mine");
-    assert!(matches!(write(&scene, &dir.path("file/out")), Err(Error::Place(_))));
+    assert!(matches!(log.write(&dir.path("file/out")), Err(Error::Place(_))));
 }
 
 #[test]

@@ -4,7 +4,8 @@ use std::fs;
 
 use crate::util::{Answer, Dir};
 use lunula::nail::Positions;
-use lunula::phantom::nailvideo::{NailProtocol, NailVideoOptions, Scene, write};
+use lunula::phantom::Generated as _;
+use lunula::phantom::nailvideo::{NailProtocol, NailVideoOptions, Scene};
 use lunula::phantom::video::Coding;
 use lunula::video::Curve;
 use ndarray_npy::ReadNpyExt as _;
@@ -68,7 +69,7 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     for (name, threads, seed) in [("one", 1, 9), ("three", 3, 9), ("other", 3, 10)] {
         let options = NailVideoOptions { seed, ..options.clone() };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| write(&Scene::new(options).unwrap(), &dir.path(name))).unwrap();
+        pool.install(|| options.write(&dir.path(name))).unwrap();
     }
     for file in ["video.mp4", "outline.json", "log.csv", "truth/frames.csv", "truth/presses.csv"] {
         let [one, three, other] = ["one", "three", "other"].map(|name| fs::read(dir.path(name).join(file)).unwrap());
@@ -173,8 +174,7 @@ fn extremes_are_drawn() {
         ),
     ] {
         let scene = Scene::new(options).unwrap();
-        let summary = write(&scene, &dir.path(name)).unwrap();
-        assert_eq!(summary.frames, scene.frames());
+        assert_eq!(scene.options().write(&dir.path(name)).unwrap().count, scene.frames());
         for frame in 0..scene.frames() {
             let truth = scene.truth(frame);
             assert!(truth.photodiodes.iter().flatten().all(|value| (0.0..1.0).contains(value)));

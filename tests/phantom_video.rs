@@ -2,12 +2,11 @@
 
 use crate::util::Dir;
 use lunula::flexion::Flexion;
+use lunula::phantom::Generated as _;
 use lunula::phantom::finger::MarkerLayout;
 use lunula::phantom::screen::Clock;
 use lunula::phantom::trajectory::Trajectory;
-use lunula::phantom::video::{
-    Chroma, Colours, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions, write,
-};
+use lunula::phantom::video::{Chroma, Colours, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions};
 use lunula::video::{Item, Matrix, Picture, Turn, Video};
 
 /// Without noise, 10 bit, chroma for each pixel.
@@ -346,7 +345,7 @@ fn the_hard_scene_has_its_distractors_away_from_the_finger() {
     let dir = Dir::new();
     let options =
         VideoOptions { seconds: 0.1, hide: Vec::new(), preset: "ultrafast", ..VideoOptions::new(Preset::Hard) };
-    assert_eq!(write(&Scene::new(options).unwrap(), &dir.path("out")).unwrap().distractors, 6);
+    assert!(options.distractors == 6 && options.write(&dir.path("out")).unwrap().warnings.is_empty());
 }
 
 #[test]
@@ -369,8 +368,8 @@ fn the_files_hold_the_frames_at_their_times() {
     let dir = Dir::new();
     let clock = Clock { offset_s: 754.0, ..Clock::default() };
     let options = VideoOptions { seconds: 2.0, jitter: 0.4, blur: 0.5, clock: Some(clock.clone()), ..small() };
+    options.write(&dir.path("out")).unwrap();
     let scene = Scene::new(options).unwrap();
-    write(&scene, &dir.path("out")).unwrap();
 
     let mut video = Video::open(&dir.path("out/video.mp4"), 2).unwrap();
     let joints = dir.table("out/truth/joints.csv");
@@ -488,9 +487,9 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     let mut options = VideoOptions { blur: 0.5, distractors: 3, jitter: 0.3, ..small() };
     options.trajectory = Trajectory::Random { hz: 0.5, seed: 9 };
     for (name, threads, seed) in [("one", 1, 9), ("three", 3, 9), ("other", 3, 10)] {
-        let scene = Scene::new(VideoOptions { seed, ..options.clone() }).unwrap();
+        let options = VideoOptions { seed, ..options.clone() };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| write(&scene, &dir.path(name)).unwrap());
+        pool.install(|| options.write(&dir.path(name)).unwrap());
     }
     let one = dir.bytes_of("one");
     assert_eq!(one.len(), 5);
@@ -518,13 +517,13 @@ fn what_the_heap_held_does_not_change_the_bytes() {
 #[test]
 fn what_is_not_ours_is_left_alone() {
     let dir = Dir::new();
-    let scene = Scene::new(VideoOptions { seconds: 0.1, ..small() }).unwrap();
+    let video = VideoOptions { seconds: 0.1, ..small() };
     dir.write("out/video.mp4", "mine");
-    assert!(matches!(write(&scene, &dir.path("out")), Err(lunula::phantom::Error::InTheWay { .. })));
+    assert!(matches!(video.write(&dir.path("out")), Err(lunula::phantom::Error::InTheWay { .. })));
     assert_eq!(dir.bytes_of("out").len(), 1);
-    write(&scene, &dir.path("again")).unwrap();
+    video.write(&dir.path("again")).unwrap();
     let first = dir.bytes_of("again");
-    write(&scene, &dir.path("again")).unwrap();
+    video.write(&dir.path("again")).unwrap();
     assert!(first == dir.bytes_of("again"));
 }
 

@@ -2,8 +2,9 @@
 
 use crate::photos_extremes::save_turned;
 use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, number, small_set};
+use lunula::phantom::Generated as _;
 use lunula::phantom::nail::Pose;
-use lunula::phantom::photos::{PhotoOptions, write};
+use lunula::phantom::photos::PhotoOptions;
 
 /// Root mean square of the differences that both know, in 255ths.
 fn rms_255(a: &ndarray::Array2<f32>, b: &ndarray::Array2<f32>) -> f64 {
@@ -31,7 +32,7 @@ fn maps_of_sixteen_subjects_equal_the_exact_ones() {
         truth_normalized: false,
         ..PhotoOptions::default()
     };
-    write(&options, &dir.path("set")).expect("synthetic photographs");
+    options.write(&dir.path("set")).expect("synthetic photographs");
     let answer = dir.lunula(&["photos", "set/photos", "--out", "out", "--json"]).expect(0);
     let report = answer.json();
     assert_eq!(report["counts"]["nails_used"], 16);
@@ -60,7 +61,7 @@ fn maps_of_sixteen_subjects_equal_the_exact_ones() {
 #[test]
 fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
     let dir = Dir::new();
-    write(&small_set(5, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
+    small_set(5, &[Pose::Nominal, Pose::Flexion]).write(&dir.path("set")).expect("synthetic photographs");
     let header = "file,subject,pose\n";
     let row = |pose: &str, k: usize| format!("{pose}/s0{k}.png,s0{k},{pose}\n");
     let rows = |of: &[usize]| -> String { of.iter().flat_map(|&k| [row("flexion", k), row("nominal", k)]).collect() };
@@ -103,7 +104,7 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
 #[test]
 fn a_photograph_saved_again_for_another_person_is_warned_of() {
     let dir = Dir::new();
-    write(&small_set(4, &[Pose::Nominal, Pose::Flexion]), &dir.path("set")).expect("synthetic photographs");
+    small_set(4, &[Pose::Nominal, Pose::Flexion]).write(&dir.path("set")).expect("synthetic photographs");
     dir.words("photos set/photos --out out").expect(0).never_says("one picture");
     let photo = image::open(dir.path("set/photos/flexion/s02.png")).expect("a picture").to_rgb8();
     let file = std::fs::File::create(dir.place("set/photos/nominal/t.jpg")).expect("a file");
@@ -337,7 +338,7 @@ fn the_report_needs_nothing_else() {
 fn detected_outlines_are_kept_corrected_and_used() {
     let dir = Dir::new();
     let options = PhotoOptions { annotate: false, ..small_set(2, &[Pose::Nominal, Pose::Normal]) };
-    write(&PhotoOptions { width: 480, height: 360, ..options }, &dir.path("set")).expect("synthetic photographs");
+    PhotoOptions { width: 480, height: 360, ..options }.write(&dir.path("set")).expect("synthetic photographs");
     dir.lunula(&["photos", "set/photos", "--out", "detected", "--write-outlines"]).expect(0);
     let detected = dir.table("detected/nails.csv");
     assert!(detected.len() == 4 && detected.iter().all(|r| r["outline"] == "detected" && r["used"] == "true"));

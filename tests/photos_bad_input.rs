@@ -459,6 +459,7 @@ fn hostile_names_stay_words() {
 
 #[test]
 fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is() {
+    use lunula::phantom::Generated as _;
     use lunula::phantom::nail::Pose;
     let dir = Dir::new();
     // Dim, noisy and small: searched for a scene in which detection doubts.
@@ -471,7 +472,7 @@ fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is
         for folder in ["set", "out"] {
             let _ = std::fs::remove_dir_all(dir.path(folder));
         }
-        lunula::phantom::photos::write(&options, &dir.path("set")).expect("a synthetic photograph");
+        options.write(&dir.path("set")).expect("a synthetic photograph");
         let answer = dir.lunula(&["photos", "set/photos", "--out", "out", "--write-outlines"]);
         let drawn = dir.path("set/photos/nominal/s01.json");
         // The outlines were saved, and there is a report: 2 would say that nothing was changed.

@@ -3,8 +3,9 @@
 
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma};
 use lunula::labelme::LabelMe;
+use lunula::phantom::Generated as _;
 use lunula::phantom::nail::Pose;
-use lunula::phantom::photos::{LightKind, write};
+use lunula::phantom::photos::LightKind;
 
 use crate::util::desk::Desk;
 use crate::util::{Dir, drawn_axis, drawn_nail, drawn_outline, labelme, number, small_set};
@@ -14,7 +15,7 @@ fn close_ups() -> Dir {
     let dir = Dir::new();
     let mut options = small_set(8, &[Pose::Nominal]);
     (options.light, options.seed, options.truth_normalized) = (LightKind::Varied, 3, false);
-    write(&options, &dir.path("scene")).expect("synthetic photographs");
+    options.write(&dir.path("scene")).expect("synthetic photographs");
     dir
 }
 

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 
 use image::{DynamicImage, Rgb, RgbImage, imageops};
 use lunula::labelme::LabelMe;
+use lunula::phantom::Generated as _;
 use lunula::phantom::nail::Pose;
-use lunula::phantom::photos::{LightKind, PhotoOptions, write};
+use lunula::phantom::photos::{LightKind, PhotoOptions};
 
 use crate::util::{Answer, Dir, number, small_set};
 
@@ -16,7 +17,7 @@ type Row = BTreeMap<String, String>;
 fn phantoms(dir: &Dir, count: u32, [width, height]: [u32; 2], seed: u64) {
     let options = small_set(count, &[Pose::Nominal]);
     let options = PhotoOptions { width, height, seed, light: LightKind::Varied, truth_normalized: false, ..options };
-    write(&options, &dir.path("scene")).expect("synthetic photographs");
+    options.write(&dir.path("scene")).expect("synthetic photographs");
 }
 
 fn phantom(dir: &Dir, subject: u32) -> RgbImage {

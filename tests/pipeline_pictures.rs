@@ -1,11 +1,12 @@
 //! `lunula run` on photographs, videos and logs.
 
-use lunula::phantom::log::{LogOptions, LogScene};
+use lunula::phantom::Generated as _;
+use lunula::phantom::log::LogOptions;
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::PhotoOptions;
 use lunula::phantom::screen::Clock;
 use lunula::phantom::trajectory::Trajectory;
-use lunula::phantom::video::{Scene, VideoOptions};
+use lunula::phantom::video::VideoOptions;
 
 use crate::util::{Answer, Dir};
 
@@ -34,7 +35,7 @@ fn photographs(dir: &Dir, there: usize) {
         truth_normalized: false,
         ..PhotoOptions::default()
     };
-    lunula::phantom::photos::write(&options, &dir.path("")).expect("photographs");
+    options.write(&dir.path("")).expect("photographs");
     (there + 1..=5).for_each(|subject| take(dir, subject, "photos", "aside"));
 }
 
@@ -136,8 +137,8 @@ fn recording(dir: &Dir, name: &str, seed: u64) {
     };
     let video = VideoOptions { seed, seconds: 2.0, trajectory, clock: Some(clock), ..VideoOptions::sized(640, 360) };
     let folder = dir.path(name);
-    lunula::phantom::video::write(&Scene::new(video).expect("a scene"), &folder).expect("a video");
-    lunula::phantom::log::write(&LogScene::new(log).expect("a log"), &folder).expect("a log");
+    video.write(&folder).expect("a video");
+    log.write(&folder).expect("a log");
 }
 
 #[test]

@@ -19,4 +19,4 @@ pub mod video;
 pub use motion::{contacts, finger, force, presses, trajectory};
 pub use scene::faults::Faults;
 pub use scene::place::{Error, Unwritten, in_the_way, refused, staged, write_record};
-pub use scene::recording::{Cost, Generated};
+pub use scene::recording::{Cost, Generated, Written};

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use lunula::align::{AlignInputs, AlignOptions, AlignOutputs, run as align};
 use lunula::job::{Outputs, Watch};
-use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
+use lunula::phantom::Generated as _;
+use lunula::phantom::log::{LogOptions, Protocol};
 use lunula::predictor::models::{Kind, Recipe};
 use lunula_thesis::compare::{CompareOptions, Person, compare};
 use rayon::prelude::*;
@@ -59,7 +60,7 @@ fn person(subject: u32, changes: &Changes, out: &Path) -> anyhow::Result<Person>
             }
         }
         let folder = out.join(format!("subject-{subject}-{repetition}"));
-        write(&LogScene::new(options)?, &folder)?;
+        options.write(&folder)?;
         Ok(folder)
     };
     let touch = |repetition| -> anyhow::Result<PathBuf> { Ok(log(Protocol::Touch, repetition)?.join("log.csv")) };

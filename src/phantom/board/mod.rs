@@ -22,4 +22,3 @@ mod write;
 pub use options::BoardOptions;
 pub use place::View;
 pub use render::{Picture, Scene};
-pub use write::{Summary, write_watched};

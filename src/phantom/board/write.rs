@@ -6,12 +6,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use image::ExtendedColorType;
-use serde::Serialize;
+use serde_json::json;
 
 use super::{BoardOptions, Picture, Scene, View};
 use crate::figure::encode_png;
 use crate::job::Watch;
+use crate::phantom::scene::faults::Faults;
 use crate::phantom::scene::place::{Error, Unwritten, refused, staged, write_record};
+use crate::phantom::scene::recording::{Cost, Generated, Written, sorted};
 use crate::table::{Column, TableWriter, Value};
 
 /// The file that says that a folder was written here.
@@ -23,50 +25,53 @@ const VIEWS: &str = "truth/views.csv";
 /// The record first: where it exists, what is of one run and what of another is made again.
 const RESULTS: [&str; 6] = [RECORD, "views", PLANE, CAMERA, CORNERS, VIEWS];
 
-/// Views that were written.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Summary {
-    /// How many, the plane's included.
-    pub views: usize,
-    /// Seconds from beginning to end.
-    pub total_s: f64,
-}
+/// Seconds on one thread a pixel of a view (assumed).
+const VIEW_S_PER_PX: f64 = 4e-7;
 
-impl BoardOptions {
-    /// The files of the views, relative to their folder.
-    pub(in crate::phantom) fn files(&self) -> Vec<String> {
-        let mut files: Vec<String> = (0..self.views).map(view_name).collect();
-        files.extend([RECORD, CAMERA, CORNERS, VIEWS].map(str::to_owned));
-        files.extend(self.plane.map(|_| PLANE.to_owned()));
-        files
+impl Generated for BoardOptions {
+    fn check(&self) -> Result<(), Faults> {
+        self.check()
+    }
+
+    fn options(&self) -> serde_json::Value {
+        json!({ "board": self })
+    }
+
+    fn files(&self) -> Vec<String> {
+        let always = [RECORD, CAMERA, CORNERS, VIEWS].into_iter().chain(self.plane.map(|_| PLANE));
+        sorted((0..self.views).map(view_name).chain(always.map(str::to_owned)))
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::of_pictures([self.size.0, self.size.1].map(f64::from), self.views as f64, VIEW_S_PER_PX)
+    }
+
+    /// Views are drawn one after the other, each by all threads.
+    fn write_watched(&self, folder: &Path, watch: &Watch<'_>) -> Result<Written, Error> {
+        let scene = Scene::new(self.clone())?;
+        let begin = Instant::now();
+        let staging = staged(folder, &RESULTS, RECORD, "a synthetic board's")?;
+        let stage = staging.path();
+        let views = stage.join("views");
+        fs::create_dir(&views).map_err(refused(&views))?;
+        let named = scene.views.iter().enumerate().map(|(index, view)| (view_name(index), view));
+        let named: Vec<(String, &View)> =
+            named.chain(scene.plane.iter().map(|view| (PLANE.to_owned(), view))).collect();
+        for (index, (name, view)) in named.iter().enumerate() {
+            write_picture(&scene.picture(std::slice::from_ref(*view), index as u32), &stage.join(name))?;
+            (watch.tick)(index as u64 + 1, Some(named.len() as u64));
+            watch.go_on()?;
+        }
+        write_truth(&scene, &named, stage)?;
+        staging.commit_exactly(&RESULTS)?;
+        let (count, total_s) = (named.len(), begin.elapsed().as_secs_f64());
+        let figures = json!({ "options": self, "views": count, "total_s": total_s });
+        Ok(Written { count, figures, total_s, warnings: Vec::new() })
     }
 }
 
 fn view_name(index: usize) -> String {
     format!("views/{:02}.png", index + 1)
-}
-
-/// Writes `scene` under `out`, watched: the ticks count views. A synthetic board written there before is replaced.
-///
-/// # Errors
-/// [`Error`]; what was under `out` before is as it was.
-pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
-    let begin = Instant::now();
-    let staging = staged(out, &RESULTS, RECORD, "a synthetic board's")?;
-    let stage = staging.path();
-    for folder in ["views", "truth"].map(|folder| stage.join(folder)) {
-        fs::create_dir_all(&folder).map_err(refused(&folder))?;
-    }
-    let named = scene.views.iter().enumerate().map(|(index, view)| (view_name(index), view));
-    let named: Vec<(String, &View)> = named.chain(scene.plane.iter().map(|view| (PLANE.to_owned(), view))).collect();
-    for (index, (name, view)) in named.iter().enumerate() {
-        write_picture(&scene.picture(std::slice::from_ref(*view), index as u32), &stage.join(name))?;
-        (watch.tick)(index as u64 + 1, Some(named.len() as u64));
-        watch.go_on()?;
-    }
-    write_truth(scene, &named, stage)?;
-    staging.commit_exactly(&RESULTS)?;
-    Ok(Summary { views: named.len(), total_s: begin.elapsed().as_secs_f64() })
 }
 
 fn write_picture(picture: &Picture, path: &Path) -> Result<(), Unwritten> {

@@ -48,5 +48,4 @@ pub use protocol::Protocol;
 pub use record::LogScene;
 pub(in crate::phantom) use samples::BEFORE_S;
 pub use samples::Row;
-pub use write::{Summary, write};
-pub(super) use write::{files, write_rows};
+pub(super) use write::{S_PER_MS, write_rows};

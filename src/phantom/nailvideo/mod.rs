@@ -48,4 +48,3 @@ pub use crate::phantom::scene::faults::Faults;
 pub use options::{NailProtocol, NailVideoOptions, NailVideoRequest};
 pub use scene::{FrameTruth, Scene};
 pub use track::Affine;
-pub use write::{Summary, write, write_watched};

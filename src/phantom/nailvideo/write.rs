@@ -5,13 +5,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde_json::json;
 
-use super::{FrameTruth, NailVideoOptions, Scene};
-use crate::job::Watch;
-use crate::phantom::log::write_rows;
+use super::{Faults, FrameTruth, NailVideoOptions, Scene};
+use crate::job::{Facts, Watch};
+use crate::phantom::log::{S_PER_MS, write_rows};
 use crate::phantom::photos::{annotation, write_npy};
 use crate::phantom::scene::place::{Error, refused, staged, write_record};
+use crate::phantom::scene::recording::{Cost, Generated, Written, sorted};
 use crate::phantom::scene::reel::draw_and_encode;
 use crate::phantom::sensor::disc_samples;
 use crate::phantom::video::{Siting, TICKS_PER_S};
@@ -36,30 +37,10 @@ const RESULTS: [&str; 9] = [
     NORMALIZED,
 ];
 
-/// A video that was written.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Summary {
-    /// Frames.
-    pub frames: usize,
-    /// Frames without the nail.
-    pub gone: usize,
-    /// Rows of the log.
-    pub log_rows: usize,
-    /// Bytes of the video.
-    pub bytes: u64,
-    /// From beginning to end, seconds.
-    pub total_s: f64,
-}
+/// Seconds on one thread a pixel of a frame; measured with a development build, 12 s of 640x480.
+const FRAME_S_PER_PX: f64 = 1.2e-7;
 
 impl NailVideoOptions {
-    /// The files of the video, relative to its folder.
-    pub(in crate::phantom) fn files(&self) -> Vec<String> {
-        let mut files: Vec<String> =
-            RESULTS.iter().filter(|name| **name != NORMALIZED).map(|&n| n.to_owned()).collect();
-        files.extend(self.normalized_frames().map(|frame| format!("{NORMALIZED}/{frame:06}.npy")));
-        files
-    }
-
     /// The frames whose normalized picture is written.
     fn normalized_frames(&self) -> impl Iterator<Item = usize> {
         let every = self.normalized_every;
@@ -67,37 +48,63 @@ impl NailVideoOptions {
     }
 }
 
-/// Writes `scene` under `out`; a synthetic nail video written there before is replaced.
-///
-/// # Errors
-/// [`Error`]; what was under `out` before is as it was.
-pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
-    write_watched(scene, out, &Watch::nobody())
-}
+impl Generated for NailVideoOptions {
+    fn check(&self) -> Result<(), Faults> {
+        self.check()
+    }
 
-/// As [`write()`], watched: the ticks count frames.
-///
-/// # Errors
-/// [`Error`]; what was under `out` before is as it was.
-pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
-    let begin = Instant::now();
-    let staging = staged(out, &RESULTS, RECORD, "a synthetic nail video's")?;
-    let truth = staging.path().join("truth");
-    fs::create_dir(&truth).map_err(refused(&truth))?;
-    let [record, video, outline, positions, log, true_log, frames, presses, normalized] =
-        RESULTS.map(|name| staging.path().join(name));
-    encode(scene, &video, watch)?;
-    annotation(&scene.nail, "video.mp4")?.write(&outline)?;
-    let text = toml::to_string(&scene.positions).map_err(|error| refused(&positions)(std::io::Error::other(error)))?;
-    fs::write(&positions, text).map_err(refused(&positions))?;
-    let [log_rows, _] = write_rows(&scene.log, &log, &true_log)?;
-    let gone = write_frames(scene, &frames)?;
-    write_presses(scene.options(), &presses)?;
-    write_record(&record, &record_of(scene))?;
-    write_normalized(scene, &normalized)?;
-    let bytes = fs::metadata(&video).map_err(refused(&video))?.len();
-    staging.commit_exactly(&RESULTS)?;
-    Ok(Summary { frames: scene.frames(), gone, log_rows, bytes, total_s: begin.elapsed().as_secs_f64() })
+    fn options(&self) -> serde_json::Value {
+        json!({ "nailvideo": self })
+    }
+
+    fn files(&self) -> Vec<String> {
+        let always = RESULTS.into_iter().filter(|name| *name != NORMALIZED).map(str::to_owned);
+        sorted(always.chain(self.normalized_frames().map(|frame| format!("{NORMALIZED}/{frame:06}.npy"))))
+    }
+
+    fn facts(&self, file: &str) -> Facts {
+        if file == "log.csv" {
+            Facts { led: Some(false), forces: Some(true), ..Facts::default() }
+        } else {
+            Facts::default()
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        let size = [self.size.0, self.size.1].map(f64::from);
+        let Cost { memory, seconds } = Cost::of_pictures(size, self.frames() as f64, FRAME_S_PER_PX);
+        Cost { memory, seconds: seconds + S_PER_MS * 1e3 * (self.seconds() + 10.0) }
+    }
+
+    fn write_watched(&self, folder: &Path, watch: &Watch<'_>) -> Result<Written, Error> {
+        let scene = Scene::new(self.clone())?;
+        let begin = Instant::now();
+        let staging = staged(folder, &RESULTS, RECORD, "a synthetic nail video's")?;
+        let [record, video, outline, positions, log, true_log, frames, presses, normalized] =
+            RESULTS.map(|name| staging.path().join(name));
+        encode(&scene, &video, watch)?;
+        annotation(&scene.nail, "video.mp4")?.write(&outline)?;
+        let text =
+            toml::to_string(&scene.positions).map_err(|error| refused(&positions)(std::io::Error::other(error)))?;
+        fs::write(&positions, text).map_err(refused(&positions))?;
+        let [log_rows, _] = write_rows(&scene.log, &log, &true_log)?;
+        let gone = write_frames(&scene, &frames)?;
+        write_presses(self, &presses)?;
+        write_record(&record, &record_of(&scene))?;
+        write_normalized(&scene, &normalized)?;
+        let bytes = fs::metadata(&video).map_err(refused(&video))?.len();
+        staging.commit_exactly(&RESULTS)?;
+        let (count, total_s) = (scene.frames(), begin.elapsed().as_secs_f64());
+        let figures = json!({
+            "options": self,
+            "frames": count,
+            "gone": gone,
+            "log_rows": log_rows,
+            "bytes": bytes,
+            "total_s": total_s,
+        });
+        Ok(Written { count, figures, total_s, warnings: Vec::new() })
+    }
 }
 
 fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
@@ -184,7 +191,7 @@ fn write_normalized(scene: &Scene, folder: &Path) -> Result<(), Error> {
 }
 
 fn record_of(scene: &Scene) -> serde_json::Value {
-    serde_json::json!({
+    json!({
         "options": scene.options(),
         "frames": scene.frames(),
         "ticks_per_s": TICKS_PER_S,

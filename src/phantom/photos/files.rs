@@ -21,25 +21,23 @@ pub(super) const RESULTS: [&str; 2] = ["truth", PHOTOS];
 pub(super) const REPLACED: [&str; 2] = [PHOTOS, "truth"];
 const PHOTOS: &str = "photos";
 
-impl PhotoOptions {
-    /// The files of the set, relative to its folder.
-    pub(in crate::phantom) fn files(&self) -> Vec<String> {
-        let mut files = vec!["truth/nails.csv".to_owned(), RECORD.to_owned()];
-        for pose in self.poses.iter().copied().map(Pose::name) {
-            files.extend(["mean", "sd", "count"].map(|what| format!("truth/maps/{pose}-{what}.npy")));
-            for name in (0..self.subjects).map(|subject| self.subject_name(subject)) {
-                files.push(format!("photos/{pose}/{name}.{}", self.format.extension()));
-                files.push(format!("truth/outlines/{pose}/{name}.json"));
-                if self.annotate {
-                    files.push(format!("photos/{pose}/{name}.json"));
-                }
-                if self.truth_normalized {
-                    files.push(format!("truth/normalized/{pose}/{name}.npy"));
-                }
+/// The files of a set, relative to its folder.
+pub(super) fn files(set: &PhotoOptions) -> Vec<String> {
+    let mut files = vec!["truth/nails.csv".to_owned(), RECORD.to_owned()];
+    for pose in set.poses.iter().copied().map(Pose::name) {
+        files.extend(["mean", "sd", "count"].map(|what| format!("truth/maps/{pose}-{what}.npy")));
+        for name in (0..set.subjects).map(|subject| set.subject_name(subject)) {
+            files.push(format!("photos/{pose}/{name}.{}", set.format.extension()));
+            files.push(format!("truth/outlines/{pose}/{name}.json"));
+            if set.annotate {
+                files.push(format!("photos/{pose}/{name}.json"));
+            }
+            if set.truth_normalized {
+                files.push(format!("truth/normalized/{pose}/{name}.npy"));
             }
         }
-        files
     }
+    files
 }
 
 /// The LabelMe file of a scene: polygon `nail`, line `axis` from proximal to distal.
@@ -61,7 +59,7 @@ pub(super) fn only_own(asked: &PhotoOptions, out: &Path) -> Result<(), Error> {
     for folder in RESULTS.map(|name| out.join(name)).iter().filter(|folder| folder.is_dir()) {
         files_below(folder, &mut there).map_err(refused(folder))?;
     }
-    let files = |set: &PhotoOptions| -> BTreeSet<PathBuf> { set.files().iter().map(|name| out.join(name)).collect() };
+    let files = |set: &PhotoOptions| -> BTreeSet<PathBuf> { files(set).iter().map(|name| out.join(name)).collect() };
     let photographs = |files: &BTreeSet<PathBuf>| -> BTreeSet<PathBuf> {
         files.iter().filter(|file| file.starts_with(out.join(PHOTOS))).cloned().collect()
     };

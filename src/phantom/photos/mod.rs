@@ -24,4 +24,3 @@ mod write;
 pub(in crate::phantom) use files::annotation;
 pub use options::{FileFormat, LightKind, PhotoOptions};
 pub(in crate::phantom) use write::write_npy;
-pub use write::{PhotoTruth, Stages, Summary, write, write_watched};

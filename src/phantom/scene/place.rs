@@ -46,6 +46,9 @@ pub enum Error {
     /// Stopped from outside; nothing was left behind.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
+    /// Of what other crates generate.
+    #[error(transparent)]
+    Other(#[from] anyhow::Error),
 }
 
 /// A file or folder that could not be written.
@@ -73,13 +76,19 @@ pub(in crate::phantom) fn is_default<C: Default + PartialEq>(choice: &C) -> bool
     *choice == C::default()
 }
 
-/// A hidden folder beside `out` for `names`, unless some of them are there and not `whose`: as [`in_the_way`].
+/// A hidden folder beside `out` for `names`, with its `truth`, unless some of them are there and not `whose`: as
+/// [`in_the_way`].
 ///
 /// # Errors
 /// [`Error::InTheWay`], or the folder can't be made.
 pub fn staged(out: &Path, names: &[&str], record: &str, whose: &'static str) -> Result<Staging, Error> {
     let staging = Staging::new(out)?;
-    in_the_way(out, names, record).map_or(Ok(staging), |place| Err(Error::InTheWay { place, whose }))
+    if let Some(place) = in_the_way(out, names, record) {
+        return Err(Error::InTheWay { place, whose });
+    }
+    let truth = staging.path().join("truth");
+    std::fs::create_dir(&truth).map_err(refused(&truth))?;
+    Ok(staging)
 }
 
 /// What stands under `out`, is one of `names`, and was not written by whoever writes `record`; or belongs to

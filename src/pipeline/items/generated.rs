@@ -212,7 +212,7 @@ fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue
 fn generate(recording: &dyn Generated, work: &Work<'_>) -> anyhow::Result<Made> {
     let stages = Stages::default();
     let said = Said::default();
-    work.run(&said, |watch| stages.time("generate", || recording.write(work.folder, watch)))?;
+    work.run(&said, |watch| stages.time("generate", || recording.write_watched(work.folder, watch)))?;
     let report = serde_json::json!({ "job": "phantom", "files": recording.files().len() });
     Ok(Made { report, stages: stages.list(), ..Made::default() })
 }

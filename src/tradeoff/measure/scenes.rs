@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use crate::phantom::log::{self, LogOptions, LogScene, Protocol};
+use crate::phantom::Generated as _;
+use crate::phantom::log::{LogOptions, Protocol};
 use crate::phantom::nail::Pose;
-use crate::phantom::photos::{PhotoOptions, write};
+use crate::phantom::photos::PhotoOptions;
 use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
-use crate::phantom::video::{self, Scene, VideoOptions};
+use crate::phantom::video::VideoOptions;
 use crate::tradeoff::measure::plan::Plan;
 use crate::tradeoff::predictor::switch;
 use crate::tradeoff::{align, photos, posture, predictor};
@@ -22,9 +23,9 @@ const SMALL: (u32, u32) = (64, 48);
 pub(in crate::tradeoff) fn photos(plan: &Plan, folder: &Path) -> anyhow::Result<photos::Settings> {
     let options =
         PhotoOptions { seed: plan.seed, subjects: plan.subjects, poses: POSES.to_vec(), ..PhotoOptions::default() };
-    write(&options, folder)?;
+    options.write(folder)?;
     let small = folder.join("small");
-    write(&PhotoOptions { width: SMALL.0, height: SMALL.1, ..options }, &small)?;
+    PhotoOptions { width: SMALL.0, height: SMALL.1, ..options }.write(&small)?;
     Ok(photos::Settings {
         set: folder.join("photos"),
         truth: folder.join("truth"),
@@ -42,7 +43,7 @@ pub(in crate::tradeoff) fn seconds(plan: &Plan) -> f64 {
 /// That video.
 pub(in crate::tradeoff) fn posture(plan: &Plan, folder: &Path) -> anyhow::Result<posture::Settings> {
     let options = VideoOptions { seed: plan.seed, seconds: seconds(plan), ..VideoOptions::new(plan.preset) };
-    video::write(&Scene::new(options)?, folder)?;
+    options.write(folder)?;
     Ok(posture_of(folder, folder.join("truth"), plan))
 }
 
@@ -65,8 +66,8 @@ pub(in crate::tradeoff) fn align(plan: &Plan, folder: &Path) -> anyhow::Result<a
     };
     let video =
         VideoOptions { seed, seconds, trajectory, jitter: 0.4, clock: Some(clock), ..VideoOptions::sized(640, 360) };
-    video::write(&Scene::new(video)?, folder)?;
-    log::write(&LogScene::new(log)?, folder)?;
+    video.write(folder)?;
+    log.write(folder)?;
     Ok(align_of(folder, folder.join("truth"), plan))
 }
 
@@ -82,7 +83,7 @@ pub(in crate::tradeoff) fn predictor(plan: &Plan, folder: &Path) -> anyhow::Resu
     let scenes =
         [("train/1", Protocol::Touch, 0), ("train/2", Protocol::Touch, 1), ("truth/1", Protocol::TouchRandom, 2)];
     for (name, protocol, next) in scenes {
-        log::write(&LogScene::new(LogOptions::of(protocol, seed.wrapping_add(next)))?, &folder.join(name))?;
+        LogOptions::of(protocol, seed.wrapping_add(next)).write(&folder.join(name))?;
     }
     predictor_of(&folder.join("train"), &folder.join("truth"), plan)
 }
@@ -101,7 +102,7 @@ pub(in crate::tradeoff) fn switch(plan: &Plan, folder: &Path) -> anyhow::Result<
             for (protocol, kind, seconds) in [(Protocol::Contacts, "press", 600.0), (Protocol::Rest, "rest", 3600.0)] {
                 seed = seed.wrapping_add(1);
                 let options = LogOptions { seconds: share * seconds, contact: true, ..LogOptions::of(protocol, seed) };
-                log::write(&LogScene::new(options)?, &folder.join(format!("{name}/{pair}-{kind}")))?;
+                options.write(&folder.join(format!("{name}/{pair}-{kind}")))?;
             }
         }
     }

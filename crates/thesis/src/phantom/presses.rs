@@ -47,8 +47,6 @@ pub(crate) fn write(options: &PressOptions, out: &Path) -> anyhow::Result<()> {
     let person = person.with_context(|| format!("no person of seed {}", options.seed))?;
     let recorded = [person.slowly(options.site)?, person.quickly(options.site)?];
     let [record, slow, quick, parameters] = RESULTS.map(|name| staging.path().join(name));
-    let truth = staging.path().join("truth");
-    fs::create_dir(&truth).map_err(refused(&truth))?;
     for (recorded, path) in recorded.iter().zip([slow, quick]) {
         table(recorded, options.site, &path)?;
     }

@@ -8,7 +8,7 @@ use lunula::job::{Facts, Watch};
 use lunula::phantom::log::LogOptions;
 use lunula::phantom::photos::PhotoOptions;
 use lunula::phantom::video::VideoOptions;
-use lunula::phantom::{Cost, Faults, Generated};
+use lunula::phantom::{Cost, Error, Faults, Generated, Written};
 use serde::Serialize;
 
 use super::presses::{self, PressOptions};
@@ -81,7 +81,7 @@ impl Generated for Recording {
         }
     }
 
-    fn write(&self, folder: &Path, watch: &Watch<'_>) -> anyhow::Result<()> {
+    fn write_watched(&self, folder: &Path, watch: &Watch<'_>) -> Result<Written, Error> {
         match self {
             Self::Press(options) => presses::write(options, folder)?,
             Self::Texts(texts) => {
@@ -89,8 +89,8 @@ impl Generated for Recording {
                 texts.iter().try_for_each(|(name, text)| staging.write(name, text.as_bytes()))?;
                 staging.commit()?;
             }
-            _ => self.phantoms().into_iter().try_for_each(|one| one.write(folder, watch))?,
+            _ => self.phantoms().into_iter().try_for_each(|one| one.write_watched(folder, watch).map(drop))?,
         }
-        Ok(())
+        Ok(Written::default())
     }
 }

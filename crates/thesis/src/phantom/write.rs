@@ -27,7 +27,7 @@ pub enum StudyError {
     #[error(transparent)]
     Place(#[from] WriteError),
     #[error("{name}: {why}")]
-    Recording { name: String, why: anyhow::Error },
+    Recording { name: String, why: lunula::phantom::Error },
     /// Stopped from outside; nothing was left behind.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
@@ -79,7 +79,7 @@ pub fn write_watched(study: &Study, out: &Path, watch: &Watch<'_>) -> Result<Stu
         watch.go_on()?;
         let folder = staging.path().join(&one.name);
         fs::create_dir_all(&folder).map_err(refused(&folder))?;
-        let written = stages.time(stage_of(&one.recording), || one.recording.write(&folder, &within));
+        let written = stages.time(stage_of(&one.recording), || one.recording.write_watched(&folder, &within));
         watch.go_on()?;
         written.map_err(|why| StudyError::Recording { name: one.name.clone(), why })?;
         (watch.tick)(1 + done.fetch_add(1, Ordering::Relaxed), Some(recordings.len() as u64));

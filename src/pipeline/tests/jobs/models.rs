@@ -8,8 +8,9 @@ use std::sync::atomic::AtomicBool;
 
 use super::{bytes_below, keys, kinds, step};
 use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, OptionFault, Prepared, Work};
+use crate::phantom::Generated as _;
 use crate::phantom::force::{ForceTrajectory, Spiral};
-use crate::phantom::log::{LogOptions, LogScene, write};
+use crate::phantom::log::LogOptions;
 use crate::predictor::tests::recording;
 
 /// A folder of recordings and results.
@@ -54,7 +55,7 @@ impl Place {
     fn log(&self, name: &str, seed: u64) {
         let force = ForceTrajectory::Spiral(Spiral { duration_s: 20.0, ..Spiral::default() });
         let options = LogOptions { seed, force, touch_from_s: Some(4.0), seconds: 24.0, ..LogOptions::default() };
-        write(&LogScene::new(options).unwrap(), &self.path(name)).unwrap();
+        options.write(&self.path(name)).unwrap();
     }
 
     /// Does a task into a folder of this name.

@@ -3,8 +3,9 @@
 use super::*;
 use crate::job::Job as _;
 use crate::job::Watch;
+use crate::phantom::Generated as _;
 use crate::phantom::nail::Pose;
-use crate::phantom::photos::{PhotoOptions, write};
+use crate::phantom::photos::PhotoOptions;
 use crate::photo::{MapsJob, Normalization, Outputs, PhotoSet, PhotosOptions};
 
 const SIZE: usize = 48;
@@ -25,7 +26,7 @@ fn phantom(grey: bool) -> TempDir {
         truth_normalized: false,
         ..PhotoOptions::default()
     };
-    write(&options, dir.path()).expect("a set");
+    options.write(dir.path()).expect("a set");
     dir
 }
 

@@ -3,10 +3,11 @@
 use super::*;
 use crate::align::{AlignJob, JoinJob};
 use crate::job::Job as _;
-use crate::phantom::log::{LogOptions, LogScene};
+use crate::phantom::Generated as _;
+use crate::phantom::log::LogOptions;
 use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
-use crate::phantom::video::{Scene, VideoOptions};
+use crate::phantom::video::VideoOptions;
 use crate::posture::PostureJob;
 
 const OF: [(&str, &str); 2] = [("subject", "S01"), ("session", "1")];
@@ -20,8 +21,7 @@ fn filmed() -> TempDir {
         clock: Some(Clock::default()),
         ..VideoOptions::sized(640, 360)
     };
-    let scene = Scene::new(options).expect("a scene");
-    crate::phantom::video::write(&scene, dir.path()).expect("a video");
+    options.write(dir.path()).expect("a video");
     dir
 }
 
@@ -86,8 +86,7 @@ fn joints_and_clock_are_measured_as_far_as_they_are_needed() {
 fn logged(seed: u64, led: bool) -> TempDir {
     let dir = tempfile::tempdir().expect("a folder");
     let trajectory = Trajectory::Eq27 { hz: 0.3 };
-    let scene = LogScene::new(LogOptions { seed, led, trajectory, ..LogOptions::default() }).expect("a log");
-    crate::phantom::log::write(&scene, dir.path()).expect("a log");
+    LogOptions { seed, led, trajectory, ..LogOptions::default() }.write(dir.path()).expect("a log");
     let tracks = "frame,marker,x_px,y_px,sd_px,status\n0,tip,10.5,20.25,0.02,ok\n";
     fs::write(dir.path().join("tracks.csv"), tracks).expect("a table");
     dir

@@ -36,7 +36,8 @@ pub(super) fn run(args: &StudyArgs) -> anyhow::Result<Outcome> {
         return plan(args, &study);
     }
     let out = args.out.as_ref().context("--out is needed: a folder for the study")?;
-    let summary = watched(&args.common, "recordings", "no synthetic study", |watch| write_watched(&study, out, watch))?;
+    let none = "no synthetic study".to_owned();
+    let summary = watched(&args.common, "recordings", none, |watch| write_watched(&study, out, watch))?;
     args.common.print_json(&serde_json::json!({
         "job": "phantom study",
         "version": env!("CARGO_PKG_VERSION"),
