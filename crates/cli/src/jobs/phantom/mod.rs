@@ -41,8 +41,8 @@ enum Kind {
     /// a posture training set without a video.
     #[command(mut_arg("out", |out| folder(out, "the log and truth/")))]
     Log(Box<Scene<LogRequest>>),
-    /// A video of a fingernail that is pressed, sheared and bent, with exact motion, colour and hidden photodiodes (4.2,
-    /// 4.3)
+    /// A video of a fingernail that is pressed, sheared and bent, with exact motion, colour and hidden photodiodes
+    /// (4.2, 4.3)
     ///
     /// Writes OUT/video.mp4, which `lunula nailvideo` reads, OUT/outline.json (the nail in the first frame, LabelMe),
     /// OUT/positions.toml (the photodiodes), OUT/log.csv (what a force transducer and a sensor that the same person
