@@ -22,18 +22,12 @@ const TURN_S: f64 = 40.0;
 /// The light of a scene.
 #[derive(Debug, Clone)]
 pub(super) struct DriftingLight {
+    options: NailVideoOptions,
     curve: Curve,
     times: Times,
-    level: f64,
-    colour: f64,
-    gradient: f64,
-    flicker: f64,
-    flicker_hz: f64,
     phase: f64,
-    glare: f64,
     waves: [Wave; 4],
     nail: NailScene,
-    half_px: [f64; 2],
 }
 
 /// Standard deviations of the glare across and along, of the nail's half width and length, and how far its middle goes
@@ -45,8 +39,7 @@ const LEAST_GLARE: f64 = 1e-4;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FrameLight<'a> {
-    curve: Curve,
-    times: &'a Times,
+    of: &'a DriftingLight,
     /// In the picture's middle: red, green, blue; none where they are as they were.
     channels: Option<[Lit; 3]>,
     /// Change from the middle to the right border and to the lower one.
@@ -65,35 +58,30 @@ impl DriftingLight {
         Self {
             curve: options.curve(),
             times: Times::new(options.curve()),
-            level: 0.01 * options.light_drift_percent,
-            colour: 0.01 * options.colour_drift_percent,
-            gradient: 0.01 * options.gradient_percent,
-            flicker: 0.01 * options.flicker_percent,
-            flicker_hz: options.flicker_hz,
             phase: numbers(options.seed, KIND_LIGHT, 2).random_range(0.0..TAU),
-            glare: 0.01 * options.glare_percent,
             waves: [wave(0), wave(1), wave(3), wave(4)],
             nail: scene.clone(),
-            half_px: [0.5 * f64::from(options.size.0), 0.5 * f64::from(options.size.1)],
+            options: options.clone(),
         }
     }
 
     /// At `t_s`, when the hand has come so far as `motion` says. Level and colour are those of the first frame but for
     /// what has changed since.
     pub(super) fn at(&self, t_s: f64, motion: &Affine) -> FrameLight<'_> {
+        let NailVideoOptions { size, flicker_percent, flicker_hz, light_drift_percent, .. } = self.options;
+        let NailVideoOptions { colour_drift_percent, gradient_percent, glare_percent, .. } = self.options;
         let [level, colour, ..] = self.waves.map(|wave| 0.5 * (wave.at(t_s) - wave.at(0.0)));
-        let flicker = 1.0 + self.flicker * (TAU * self.flicker_hz * t_s + self.phase).sin();
-        let level = flicker * (1.0 + self.level * level);
-        let colour = self.colour * colour;
+        let flicker = 1.0 + 0.01 * flicker_percent * (TAU * flicker_hz * t_s + self.phase).sin();
+        let level = flicker * (1.0 + 0.01 * light_drift_percent * level);
+        let colour = 0.01 * colour_drift_percent * colour;
         let (sin, cos) = (self.phase + TAU * t_s / TURN_S).sin_cos();
         let channels = [level * (1.0 + colour), level, level * (1.0 - colour)];
         FrameLight {
-            curve: self.curve,
-            times: &self.times,
+            of: self,
             channels: (channels != [1.0; 3]).then(|| channels.map(|channel| self.curve.times(channel))),
-            gradient: [self.gradient * cos, self.gradient * sin],
-            half_px: self.half_px,
-            glare: self.glare,
+            gradient: [cos, sin].map(|part| 0.01 * gradient_percent * part),
+            half_px: [size.0, size.1].map(|side| 0.5 * f64::from(side)),
+            glare: 0.01 * glare_percent,
             glare_px: {
                 let [u, v] = [0, 1].map(|axis| GLARE_REACH[axis] * self.waves[2 + axis].at(t_s));
                 motion.apply(self.nail.picture_from_nail(u, v))
@@ -114,8 +102,8 @@ impl FrameLight<'_> {
         let mirrored = self.mirrored(at);
         if mirrored > LEAST_GLARE {
             lit = lit.map(|part| {
-                let light = self.curve.light(f64::from(part));
-                self.curve.encoded(light + (1.0 - light).max(0.0) * mirrored) as f32
+                let light = self.of.curve.light(f64::from(part));
+                self.of.curve.encoded(light + (1.0 - light).max(0.0) * mirrored) as f32
             });
         }
         lit
@@ -144,7 +132,7 @@ impl FrameLight<'_> {
             return self.channels;
         }
         let [right, down] = [(x + 0.5) / self.half_px[0] - 1.0, (y + 0.5) / self.half_px[1] - 1.0];
-        let here = self.times.of((1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0));
+        let here = self.of.times.of((1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0));
         Some(self.channels.map_or([here; 3], |channels| channels.map(|channel| channel.and(here))))
     }
 }

@@ -60,14 +60,8 @@ impl Affine {
 /// A hand's way.
 #[derive(Debug, Clone)]
 pub(super) struct Track {
+    options: NailVideoOptions,
     centre_px: [f64; 2],
-    drift_px: f64,
-    turn_rad: f64,
-    scale: f64,
-    tilt: f64,
-    jerk_px: f64,
-    seed: u64,
-    jerk_s: f64,
     /// Shift right, down; turn; size; stretch, shear.
     waves: [Wave; 6],
     /// The hand is out from and until, and where to.
@@ -84,15 +78,8 @@ impl Track {
             (span_s, [away_px * turn.cos(), away_px * turn.sin()])
         });
         let mut track = Self {
+            options: options.clone(),
             centre_px,
-            drift_px: options.drift_px,
-            turn_rad: options.turn_deg.to_radians(),
-            scale: 0.01 * options.scale_percent,
-            tilt: 0.01 * options.tilt_percent,
-            // A smooth step is half as steep again in its middle as on the whole.
-            jerk_px: options.jerk_px * JERK_FRAMES / 1.5,
-            seed: options.seed,
-            jerk_s: JERK_FRAMES / options.fps,
             waves: [0, 1, 2, 3, 4, 5].map(wave),
             leave,
             back: Affine::IDENTITY,
@@ -107,31 +94,35 @@ impl Track {
     }
 
     fn posed(&self, t_s: f64) -> Affine {
+        let NailVideoOptions { drift_px, turn_deg, scale_percent, tilt_percent, .. } = self.options;
         let [right, down, turn, size, stretch, shear] = self.waves.map(|wave| wave.at(t_s));
-        let (sin, cos) = (self.turn_rad * turn).sin_cos();
-        let (size, stretch, shear) = (1.0 + self.scale * size, self.tilt * stretch, self.tilt * shear);
+        let (sin, cos) = (turn_deg.to_radians() * turn).sin_cos();
+        let (scale, tilt) = (0.01 * scale_percent, 0.01 * tilt_percent);
+        let (size, stretch, shear) = (1.0 + scale * size, tilt * stretch, tilt * shear);
         // Stretched and sheared, then turned.
         let [a, b, d, e] = [size * (1.0 + 0.5 * stretch), size * shear, 0.0, size * (1.0 - 0.5 * stretch)];
         let [a, b, d, e] = [cos * a - sin * d, cos * b - sin * e, sin * a + cos * d, sin * b + cos * e];
         let [jerk_x, jerk_y] = self.jerk(t_s);
         let [away_x, away_y] = self.away(t_s);
         let [x, y] = self.centre_px;
-        let c = x + self.drift_px * right + jerk_x + away_x - a * x - b * y;
-        let f = y + self.drift_px * down + jerk_y + away_y - d * x - e * y;
+        let c = x + drift_px * right + jerk_x + away_x - a * x - b * y;
+        let f = y + drift_px * down + jerk_y + away_y - d * x - e * y;
         Affine([a, b, c, d, e, f])
     }
 
     fn jerk(&self, t_s: f64) -> [f64; 2] {
-        if self.jerk_px == 0.0 || t_s < JERK_EVERY_S {
+        let NailVideoOptions { seed, fps, jerk_px, .. } = self.options;
+        if jerk_px == 0.0 || t_s < JERK_EVERY_S {
             return [0.0; 2];
         }
         let which = (t_s / JERK_EVERY_S).floor();
-        let gone = smooth((t_s - which * JERK_EVERY_S) / self.jerk_s);
+        let gone = smooth((t_s - which * JERK_EVERY_S) / (JERK_FRAMES / fps));
         // Away and back in turn, the next one elsewhere.
         let odd = which as u64 % 2 == 1;
-        let turn = numbers(self.seed, KIND_JERK, (which as u64).div_ceil(2) as u32).random_range(0.0..TAU);
-        let far = self.jerk_px * if odd { gone } else { 1.0 - gone };
-        let before = numbers(self.seed, KIND_JERK, (which as u64 / 2) as u32).random_range(0.0..TAU);
+        let turn = numbers(seed, KIND_JERK, (which as u64).div_ceil(2) as u32).random_range(0.0..TAU);
+        // A smooth step is half as steep again in its middle as on the whole.
+        let far = jerk_px * JERK_FRAMES / 1.5 * if odd { gone } else { 1.0 - gone };
+        let before = numbers(seed, KIND_JERK, (which as u64 / 2) as u32).random_range(0.0..TAU);
         let turn = if odd { turn } else { before };
         [far * turn.cos(), far * turn.sin()]
     }
