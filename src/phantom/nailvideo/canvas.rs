@@ -177,15 +177,9 @@ mod tests {
     fn a_canvas_is_the_scene_at_any_moment() {
         /// Measured within the nail and over the whole region, RMS in 255ths: 0.0010 and 0.0079.
         const NEAR: [f64; 2] = [0.002, 0.012];
-        let camera = Camera {
-            width: 320,
-            height: 240,
-            centre_px: [160.0, 120.0],
-            nail_width_px: 95.0,
-            axis: Axis::from_clockwise_rad(0.1),
-            blur_px: 1.0,
-            background: Background { colour: [0.6, 0.5, 0.4], grain: 0.1, shadow: 0.3 },
-        };
+        let background = Background { colour: [0.6, 0.5, 0.4], grain: 0.1, shadow: 0.3 };
+        let axis = Axis::from_clockwise_rad(0.1);
+        let camera = Camera { axis, background, ..Camera::upright([320, 240], [160.0, 120.0], 95.0) };
         let light = Light { brightness: 1.3, gradient: [0.0; 2], ..Light::chamber() };
         let scene = NailScene { subject: person(2), pose: Pose::Nominal, light, camera };
         let canvas = Canvas::new(&scene, [0.0, 0.0, 320.0, 240.0]);

@@ -151,15 +151,9 @@ fn nail_scene(options: &NailVideoOptions, subject: Subject, which: u32) -> NailS
     let centre_px = sides.map(|side| 0.5 * (side - 1.0) + 0.03 * side * rng.random_range(-1.0..1.0));
     let axis = Axis::from_clockwise_rad((6.0 * rng.random_range(-1.0..1.0f64)).to_radians());
     let side = rng.random_range(-0.2..0.2);
-    let camera = Camera {
-        width: options.size.0,
-        height: options.size.1,
-        centre_px,
-        nail_width_px: options.nail_px * if which == 0 { 1.0 } else { 0.9 },
-        axis,
-        blur_px: 1.0,
-        background: Background::random(&mut rng),
-    };
+    let background = Background::random(&mut rng);
+    let nail_px = options.nail_px * if which == 0 { 1.0 } else { 0.9 };
+    let camera = Camera { axis, background, ..Camera::upright(options.size.into(), centre_px, nail_px) };
     let light = Light { brightness: options.level, gradient: [0.0; 2], side, ..Light::chamber() };
     NailScene { subject, pose: Pose::Nominal, light, camera }
 }

@@ -112,22 +112,15 @@ impl Discs {
 mod tests {
     use super::*;
     use crate::nail::Axis;
-    use crate::phantom::nail::{Background, Camera, Light, Pose, Subject};
+    use crate::phantom::nail::{Camera, Light, Pose, Subject};
 
     #[test]
     fn a_discs_mean_is_the_fields_at_any_moment() {
         /// Measured: 1.8e-7.
         const NEAR: f64 = 4e-7;
         let subject = Subject::random(0, 3);
-        let camera = Camera {
-            width: 640,
-            height: 480,
-            centre_px: [311.0, 250.3],
-            nail_width_px: 190.0,
-            axis: Axis::from_clockwise_rad(0.2),
-            blur_px: 1.0,
-            background: Background::chamber(),
-        };
+        let axis = Axis::from_clockwise_rad(0.2);
+        let camera = Camera { axis, ..Camera::upright([640, 480], [311.0, 250.3], 190.0) };
         let scene = NailScene { subject, pose: Pose::Nominal, light: Light::chamber(), camera };
         let positions = Positions::thesis();
         let discs = Discs::new(&scene, &positions);

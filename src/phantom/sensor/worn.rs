@@ -13,8 +13,8 @@ use rand::RngExt;
 
 use super::photodiode::{KIND_SESSION, PEOPLE, SESSION};
 use super::{CHANNELS, Discs, Touch};
-use crate::nail::{Axis, Positions};
-use crate::phantom::nail::{Background, Blood, Camera, ColourWeights, Light, NailScene, Pose, Subject, numbers};
+use crate::nail::Positions;
+use crate::phantom::nail::{Blood, Camera, ColourWeights, Light, NailScene, Pose, Subject, numbers};
 
 /// Volts of a photodiode below which everything is of full scale's green (assumed).
 const FULL_SCALE_V: f64 = 7.0;
@@ -46,15 +46,7 @@ impl WornSensor {
         let mut gain = || FULL_SCALE_V * (1.0 + SESSION.0 * rng.random_range(-1.0..=1.0));
         let gains = positions.photodiodes.iter().map(|_| gain()).collect();
         let side = (4.0 * NAIL_PX) as u32;
-        let camera = Camera {
-            width: side,
-            height: side,
-            centre_px: [0.5 * f64::from(side); 2],
-            nail_width_px: NAIL_PX,
-            axis: Axis::from_clockwise_rad(0.0),
-            blur_px: 1.0,
-            background: Background::chamber(),
-        };
+        let camera = Camera::upright([side; 2], [0.5 * f64::from(side); 2], NAIL_PX);
         let light = Light { gradient: [0.0; 2], ..Light::chamber() };
         let subject = person(subject);
         let scene = NailScene { subject: subject.clone(), pose: Pose::Nominal, light, camera };

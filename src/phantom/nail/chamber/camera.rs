@@ -53,6 +53,12 @@ impl Background {
 }
 
 impl Camera {
+    /// A good camera of which the picture has this width and height, upright, before the chamber's inside.
+    pub fn upright([width, height]: [u32; 2], centre_px: [f64; 2], nail_width_px: f64) -> Self {
+        let (axis, background) = (Axis::from_clockwise_rad(0.0), Background::chamber());
+        Self { width, height, centre_px, nail_width_px, axis, blur_px: 1.0, background }
+    }
+
     /// A close-up of a nail of length over width `aspect`: the nail's length is `filling` of the picture's height (less
     /// where its width would not fit), the axis within `turn_deg` of
     /// upright, the middle within what the picture leaves free.
@@ -68,14 +74,6 @@ impl Camera {
         ];
         let axis = Axis::from_clockwise_rad((turn_deg * rng.random_range(-1.0..1.0)).to_radians());
         let blur_px = rng.random_range(0.7..1.0);
-        Self {
-            width: size[0],
-            height: size[1],
-            centre_px,
-            nail_width_px,
-            axis,
-            blur_px,
-            background: Background::chamber(),
-        }
+        Self { axis, blur_px, ..Self::upright(size, centre_px, nail_width_px) }
     }
 }
