@@ -10,8 +10,8 @@ use super::{Affine, Faults, NailVideoOptions};
 use crate::nail::{Axis, Positions};
 use crate::phantom::log::{BEFORE_S, Doing, LogScene};
 use crate::phantom::nail::{Background, Blood, Camera, ColourWeights, Light, NailScene, Pose, Subject, numbers};
+use crate::phantom::scene::reel::TICKS_PER_S;
 use crate::phantom::sensor::{Discs, Response, Touch, person};
-use crate::phantom::video::TICKS_PER_S;
 
 const KIND_SCENE: u32 = 45;
 

@@ -13,11 +13,11 @@ use crate::phantom::log::{S_PER_MS, write_rows};
 use crate::phantom::photos::{annotation, write_npy};
 use crate::phantom::scene::place::{Error, refused, staged, write_record};
 use crate::phantom::scene::recording::{Cost, Generated, Written, sorted};
-use crate::phantom::scene::reel::draw_and_encode;
+use crate::phantom::scene::reel::{TICKS_PER_S, film};
 use crate::phantom::sensor::disc_samples;
-use crate::phantom::video::{Siting, TICKS_PER_S};
+use crate::phantom::video::Siting;
 use crate::table::{Column, TableWriter, Value};
-use crate::video::{Encoder, Encoding, Picture};
+use crate::video::Encoding;
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/nailvideo.json";
@@ -82,7 +82,17 @@ impl Generated for NailVideoOptions {
         let staging = staged(folder, &RESULTS, RECORD, "a synthetic nail video's")?;
         let [record, video, outline, positions, log, true_log, frames, presses, normalized] =
             RESULTS.map(|name| staging.path().join(name));
-        encode(&scene, &video, watch)?;
+        let usual = Encoding::new(self.format());
+        let encoding = Encoding {
+            matrix: self.coding.matrix(),
+            chroma_site: Some(Siting::Left.place()),
+            codec: self.coding.codec,
+            crf: self.crf,
+            preset: self.coding.known_preset().unwrap_or(usual.preset),
+            ..usual
+        };
+        let (draw, ticks) = (|frame: usize| scene.picture(frame), |frame: usize| self.ticks(frame));
+        film(&video, (encoding, self.fps), scene.frames(), draw, ticks, watch)?;
         annotation(&scene.nail, "video.mp4")?.write(&outline)?;
         let text =
             toml::to_string(&scene.positions).map_err(|error| refused(&positions)(std::io::Error::other(error)))?;
@@ -105,25 +115,6 @@ impl Generated for NailVideoOptions {
         });
         Ok(Written { count, figures, total_s, warnings: Vec::new() })
     }
-}
-
-fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
-    let options = scene.options();
-    let usual = Encoding::new(options.format());
-    let encoding = Encoding {
-        matrix: options.coding.matrix(),
-        chroma_site: Some(Siting::Left.place()),
-        codec: options.coding.codec,
-        crf: options.crf,
-        preset: options.coding.known_preset().unwrap_or(usual.preset),
-        ticks_per_s: TICKS_PER_S,
-        ticks_a_picture: (f64::from(TICKS_PER_S) / options.fps).round() as i64,
-        ..usual
-    };
-    let mut encoder = Encoder::create(path, &encoding)?;
-    let encode = |frame: usize, picture: Picture| encoder.push(&picture, options.ticks(frame));
-    draw_and_encode(scene.frames(), |frame| scene.picture(frame), encode, watch)?;
-    Ok(encoder.finish()?)
 }
 
 /// Writes the table of the frames; returns how many are without the nail.

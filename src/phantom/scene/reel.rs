@@ -1,20 +1,44 @@
-//! A video's frames: drawn side by side while those before them are encoded, and handed on in their order.
+//! A video's frames: drawn side by side while those before them are encoded, in their order.
+
+use std::path::Path;
+use std::time::Instant;
 
 use rayon::prelude::*;
 
 use super::place::Error;
 use crate::job::Watch;
-use crate::video::VideoError;
+use crate::video::{Encoder, Encoding, Picture, VideoError};
 
-/// Draws so many frames and hands each on with its number; watched: the ticks count frames.
-pub(in crate::phantom) fn draw_and_encode<T: Send>(
+/// Ticks a second of the frames' times.
+pub(in crate::phantom) const TICKS_PER_S: i32 = 90_000;
+
+/// Draws so many frames of a video and encodes each at its ticks; watched: the ticks of `watch` count frames. How long
+/// drawing took, summed over the threads, and encoding beside it, seconds.
+pub(in crate::phantom) fn film(
+    path: &Path,
+    (encoding, fps): (Encoding, f64),
     frames: usize,
-    draw: impl Fn(usize) -> T + Sync,
-    mut encode: impl FnMut(usize, T) -> Result<(), VideoError> + Send,
+    draw: impl Fn(usize) -> Picture + Sync,
+    ticks: impl Fn(usize) -> i64 + Sync,
     watch: &Watch<'_>,
-) -> Result<(), Error> {
+) -> Result<[f64; 2], Error> {
+    let ticks_a_picture = (f64::from(TICKS_PER_S) / fps).round() as i64;
+    let encoding = Encoding { ticks_per_s: TICKS_PER_S, ticks_a_picture, ..encoding };
+    let mut encoder = Encoder::create(path, &encoding)?;
+    let [mut draw_s, mut encode_s] = [0.0; 2];
+    let one = |&frame: &usize| {
+        let start = Instant::now();
+        (draw(frame), start.elapsed().as_secs_f64())
+    };
+    let mut encode = |frame: usize, (picture, drawn_s): (Picture, f64)| -> Result<(), VideoError> {
+        let start = Instant::now();
+        encoder.push(&picture, ticks(frame))?;
+        encode_s += start.elapsed().as_secs_f64();
+        draw_s += drawn_s;
+        Ok(())
+    };
     let all: Vec<usize> = (0..frames).collect();
-    let draw = |batch: &[usize]| -> Vec<T> { batch.par_iter().map(|&frame| draw(frame)).collect() };
+    let draw = |batch: &[usize]| -> Vec<(Picture, f64)> { batch.par_iter().map(one).collect() };
     let mut batches = all.chunks(rayon::current_num_threads());
     let mut drawn = batches.next().map(draw).unwrap_or_default();
     let mut done = 0;
@@ -30,5 +54,7 @@ pub(in crate::phantom) fn draw_and_encode<T: Send>(
         watch.go_on()?;
         drawn = following;
     }
-    Ok(())
+    let start = Instant::now();
+    encoder.finish()?;
+    Ok([draw_s, encode_s + start.elapsed().as_secs_f64()])
 }

@@ -46,5 +46,4 @@ pub(in crate::phantom) use draw::picture::encoded;
 pub use draw::sensor::Siting;
 pub(in crate::phantom) use draw::sensor::add_noise;
 pub use options::{Chroma, Colours, Hide, Leave, Preset, ScreenEvents, VideoOptions};
-pub(in crate::phantom) use scene::TICKS_PER_S;
 pub use scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene, SceneMarker};

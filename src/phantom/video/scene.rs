@@ -8,13 +8,11 @@ use serde::Serialize;
 use super::VideoOptions;
 use crate::phantom::motion::finger::Skin;
 use crate::phantom::scene::lens::Mapping;
+use crate::phantom::scene::reel::TICKS_PER_S;
 use crate::phantom::screen::Clock;
 use crate::phantom::video::draw::blot::Blot;
 use crate::phantom::video::draw::limb::Limb;
 use crate::phantom::video::draw::objects::{Distractor, Stick};
-
-/// Ticks a second of the frames' times.
-pub(in crate::phantom) const TICKS_PER_S: i32 = 90_000;
 
 /// The sway's rates, hertz.
 const SWAY_HZ: [f64; 2] = [0.13, 0.19];

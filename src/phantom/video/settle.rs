@@ -5,11 +5,12 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::scene::{Scene, SceneMarker, TICKS_PER_S};
+use super::scene::{Scene, SceneMarker};
 use super::{Faults, Hide, VideoOptions};
 use crate::flexion::Flexion;
 use crate::phantom::nail::numbers;
 use crate::phantom::scene::lens::row_moves;
+use crate::phantom::scene::reel::TICKS_PER_S;
 use crate::phantom::screen::{Clock, Jump};
 use crate::phantom::video::draw::blot::Blot;
 use crate::phantom::video::draw::limb::Limb;

@@ -7,14 +7,13 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::scene::TICKS_PER_S;
 use super::{Faults, FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::job::{Facts, Watch};
 use crate::phantom::scene::place::{Error, refused, staged, write_record};
 use crate::phantom::scene::recording::{Cost, Generated, Written, sorted};
-use crate::phantom::scene::reel::draw_and_encode;
+use crate::phantom::scene::reel::{TICKS_PER_S, film};
 use crate::table::{Column, TableWriter, Value};
-use crate::video::{Encoder, Encoding, Picture};
+use crate::video::Encoding;
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/scene.json";
@@ -61,7 +60,17 @@ impl Generated for VideoOptions {
         let staging = staged(folder, &RESULTS, RECORD, "a synthetic video's")?;
         let stage = staging.path();
         let video = stage.join("video.mp4");
-        let [draw_s, encode_s] = encode(&scene, &video, watch)?;
+        let encoding = Encoding {
+            matrix: self.matrix,
+            chroma_site: self.stated_siting.map(Siting::place),
+            turn: self.turn,
+            codec: self.codec,
+            crf: self.crf,
+            preset: self.preset,
+            ..Encoding::new(self.format())
+        };
+        let (draw, ticks) = (|frame: usize| scene.picture(frame), |frame: usize| scene.ticks[frame]);
+        let [draw_s, encode_s] = film(&video, (encoding, self.fps), scene.frames(), draw, ticks, watch)?;
         let start = Instant::now();
         write_truth(&scene, &stage.join("truth"))?;
         write_record(&stage.join(RECORD), &record_of(&scene))?;
@@ -83,40 +92,6 @@ impl Generated for VideoOptions {
         });
         Ok(Written { count: frames, figures, total_s, warnings: fewer.into_iter().collect() })
     }
-}
-
-/// Draws and encodes; how long drawing took, summed over the threads, and encoding beside it, seconds.
-fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<[f64; 2], Error> {
-    let [mut draw_s, mut encode_s] = [0.0; 2];
-    let options = scene.options();
-    let encoding = Encoding {
-        matrix: options.matrix,
-        chroma_site: options.stated_siting.map(Siting::place),
-        turn: options.turn,
-        codec: options.codec,
-        crf: options.crf,
-        preset: options.preset,
-        ticks_per_s: TICKS_PER_S,
-        ticks_a_picture: (f64::from(TICKS_PER_S) / options.fps).round() as i64,
-        ..Encoding::new(options.format())
-    };
-    let mut encoder = Encoder::create(path, &encoding)?;
-    let draw = |frame: usize| {
-        let start = Instant::now();
-        (scene.picture(frame), start.elapsed().as_secs_f64())
-    };
-    let encode = |frame: usize, (picture, drawn_s): (Picture, f64)| {
-        let start = Instant::now();
-        encoder.push(&picture, scene.ticks[frame])?;
-        encode_s += start.elapsed().as_secs_f64();
-        draw_s += drawn_s;
-        Ok(())
-    };
-    draw_and_encode(scene.frames(), draw, encode, watch)?;
-    let start = Instant::now();
-    encoder.finish()?;
-    encode_s += start.elapsed().as_secs_f64();
-    Ok([draw_s, encode_s])
 }
 
 fn word(status: MarkerStatus) -> &'static str {
