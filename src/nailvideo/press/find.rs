@@ -1,30 +1,37 @@
 //! When a nail was pressed and let go, from the traces of all photodiodes.
 //!
-//! A step is a time at which the means of half a second after and before differ most, in some photodiode by 4 SDs of
-//! its noise; where there is none near, means of one and a half seconds, for slow courses. The first step leads away
-//! from rest, so it is a press; one in the opposite direction, over all photodiodes, is a release, one in the same
-//! direction is pressing harder and belongs to the press.
+//! A step is a time at which the means of a quarter of a second after and before differ most, in some photodiode by 4
+//! SDs of its noise; where there is none near, means of half a second and of one and a half, for slow courses. Steps in
+//! opposite directions, over all photodiodes, are never one. The first step leads away from rest, so it is a press; one
+//! in the opposite direction is a release, one in the same direction is pressing harder and belongs to the press.
 
 use super::Trace;
 use crate::median::{SD_OF_MAD, median};
 
-/// What is averaged before and after a step, seconds (assumed: longer than the time constants of 4.3, shorter than a
-/// quick press), and for slow courses.
-const SIDES_S: [f64; 2] = [0.5, 1.5];
+/// What steps are looked for at.
+struct Scale {
+    /// What is averaged before and after a step, seconds.
+    side_s: f64,
+    /// Steps in one direction that are nearer than this are one, seconds.
+    apart_s: f64,
+    /// The least step, as a part of the values' size where the nail is at rest: 3.7 % of the light, 2 % as encoded
+    /// (assumed: below it are vasomotion and exposure; of a press, ratios of light change 1.8 times as much as those of
+    /// colours as encoded). Slow changes are larger over longer means.
+    least_part: f64,
+}
+
+/// Taps, presses, and slow courses (assumed; the second is longer than the time constants of 4.3).
+const SCALES: [Scale; 3] = [
+    Scale { side_s: 0.25, apart_s: 0.3, least_part: 0.037 },
+    Scale { side_s: 0.5, apart_s: 0.6, least_part: 0.037 },
+    Scale { side_s: 1.5, apart_s: 1.5, least_part: 0.074 },
+];
 /// Such a difference, of the noise's SD in one sample: 8 standard errors of it, and more (measured: no figures in 600
 /// traces without a press). Whether the step itself is large enough is for its course to say.
 const LEAST_SDS: f64 = 4.0;
-/// A step in the values themselves, of their size where the nail is at rest: 3.7 % of the light, 2 % as encoded
-/// (assumed: below it are vasomotion and exposure; of a press, ratios of light change 1.8 times as much as those of
-/// colours as encoded).
-const LEAST_PART: f64 = 0.037;
-/// The same over the longer means, in which slow changes are larger.
-const LEAST_PART_SLOWLY: f64 = 0.074;
 /// Samples on each side, and their share of the frames: over a gap slow changes look like steps.
 const FEWEST: usize = 4;
 const LEAST_KNOWN: f64 = 0.6;
-/// Steps nearer than this are one, seconds.
-const APART_S: f64 = 0.6;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
@@ -46,21 +53,19 @@ pub(in crate::nailvideo) fn noise_sd(values: &[f64]) -> Option<f64> {
 /// Presses in the order of time; `whole` is what a change of all light is in the unit of the traces.
 pub(super) fn presses(time_s: &[f64], traces: &[Trace], whole: f64) -> Vec<Found> {
     let noise: Vec<f64> = traces.iter().map(|trace| noise_sd(&trace.values).unwrap_or(f64::INFINITY)).collect();
-    let [quick, slow] = SIDES_S.map(|side_s| {
-        let steps: Vec<Vec<f64>> = (0..time_s.len()).map(|k| step(time_s, traces, k, side_s)).collect();
-        let part = if side_s == SIDES_S[0] { LEAST_PART } else { LEAST_PART_SLOWLY };
-        let events = largest(time_s, &steps, &noise, part * whole, side_s.max(APART_S));
-        events.into_iter().map(|(k, size)| Step { k, size, by: steps[k].clone() }).collect::<Vec<_>>()
-    });
-    let far = |one: &Step| quick.iter().all(|other| (time_s[one.k] - time_s[other.k]).abs() > SIDES_S[1]);
-    let slow: Vec<Step> = slow.into_iter().filter(far).collect();
-    let mut events: Vec<Step> = quick.into_iter().chain(slow).collect();
+    let mut events: Vec<Step> = Vec::new();
+    for scale in &SCALES {
+        let mut steps = largest(time_s, traces, &noise, scale, whole);
+        let is_far = |k: usize| events.iter().all(|other| (time_s[k] - time_s[other.k]).abs() > scale.side_s);
+        steps.retain(|one| is_far(one.k));
+        events.extend(steps);
+    }
     events.sort_by_key(|step| step.k);
     paired(time_s, &events)
 }
 
 /// A place where the traces step.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Step {
     k: usize,
     size: f64,
@@ -68,21 +73,32 @@ struct Step {
     by: Vec<f64>,
 }
 
-/// Where the traces step most within `apart_s`, and by how many SDs.
-fn largest(time_s: &[f64], steps: &[Vec<f64>], noise: &[f64], least: f64, apart_s: f64) -> Vec<(usize, f64)> {
-    let size = |k: usize| {
-        let of = |(step, noise): (&f64, &f64)| {
-            if step.is_finite() && step.abs() >= least { step.abs() / noise.max(1e-9) } else { 0.0 }
+impl Step {
+    /// Whether both lead in one direction, over all photodiodes.
+    fn is_along(&self, other: &Self) -> bool {
+        let part = |(a, b): (&f64, &f64)| if a.is_finite() && b.is_finite() { a * b } else { 0.0 };
+        self.by.iter().zip(&other.by).map(part).sum::<f64>() > 0.0
+    }
+}
+
+/// Where the traces step most of all steps near in the same direction.
+fn largest(time_s: &[f64], traces: &[Trace], noise: &[f64], scale: &Scale, whole: f64) -> Vec<Step> {
+    let of = |k: usize| {
+        let by = step(time_s, traces, k, scale.side_s);
+        let sds = |(step, noise): (&f64, &f64)| {
+            if step.abs() >= scale.least_part * whole { step.abs() / noise.max(1e-9) } else { 0.0 }
         };
-        steps[k].iter().zip(noise).map(of).fold(0.0, f64::max)
+        Step { k, size: by.iter().zip(noise).map(sds).fold(0.0, f64::max), by }
     };
-    let sizes: Vec<f64> = (0..time_s.len()).map(size).collect();
-    let is_largest = |k: usize| {
-        let near = |other: &usize| (time_s[*other] - time_s[k]).abs() <= apart_s;
-        let before = (0..k).rev().take_while(near).all(|other| sizes[other] < sizes[k]);
-        before && (k + 1..sizes.len()).take_while(near).all(|other| sizes[other] <= sizes[k])
+    let steps: Vec<Step> = (0..time_s.len()).map(of).collect();
+    let is_largest = |one: &&Step| {
+        let near = |other: &&Step| (time_s[other.k] - time_s[one.k]).abs() <= scale.apart_s;
+        let before = steps[..one.k].iter().rev().take_while(near);
+        let after = steps[one.k + 1..].iter().take_while(near);
+        before.filter(|other| other.is_along(one)).all(|other| other.size < one.size)
+            && after.filter(|other| other.is_along(one)).all(|other| other.size <= one.size)
     };
-    (0..sizes.len()).filter(|&k| sizes[k] >= LEAST_SDS && is_largest(k)).map(|k| (k, sizes[k])).collect()
+    steps.iter().filter(|one| one.size >= LEAST_SDS).filter(is_largest).cloned().collect()
 }
 
 /// Presses and releases of steps in the order of time.
@@ -90,13 +106,11 @@ fn paired(time_s: &[f64], events: &[Step]) -> Vec<Found> {
     // With each, the step that began it, and the one that ended it.
     let mut found: Vec<(Found, &Step, Option<&Step>)> = Vec::new();
     for step in events {
-        let same = |other: &Step| {
-            let part = |(a, b): (&f64, &f64)| if a.is_finite() && b.is_finite() { a * b } else { 0.0 };
-            step.by.iter().zip(&other.by).map(part).sum::<f64>() > 0.0
-        };
         let at_s = time_s[step.k];
         match found.last_mut() {
-            Some((last, first, end @ None)) if !same(first) => (last.release_s, *end) = (Some(at_s), Some(step)),
+            Some((last, first, end @ None)) if !step.is_along(first) => {
+                (last.release_s, *end) = (Some(at_s), Some(step))
+            }
             // Pressing harder.
             Some((last, first, None)) => {
                 if step.size > first.size {
@@ -104,7 +118,7 @@ fn paired(time_s: &[f64], events: &[Step]) -> Vec<Found> {
                 }
             }
             // Letting go further.
-            Some((last, first, Some(end))) if !same(first) => {
+            Some((last, first, Some(end))) if !step.is_along(first) => {
                 if step.size > end.size {
                     (last.release_s, *end) = (Some(at_s), step);
                 }

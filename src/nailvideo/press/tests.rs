@@ -284,6 +284,33 @@ fn a_press_in_a_trace_of_two_has_its_length() {
 }
 
 #[test]
+fn each_quick_tap_is_a_press() {
+    for (held_s, pause_s) in [(0.2, 0.3), (0.3, 0.4), (0.5, 0.5), (0.5, 0.7)] {
+        for seed in 0..20 {
+            let onset_s = |tap: u32| 2.0 + f64::from(tap) * (held_s + pause_s) + (seed % 7) as f64 / 7.0 / RATE_HZ;
+            let mut normal = normals(seed);
+            let mut level = 0.0;
+            let time_s: Vec<f64> = (0..360).map(|k| f64::from(k) / RATE_HZ).collect();
+            let values = time_s.iter().map(|&t| {
+                let is_pressed = (0..8).any(|tap| (onset_s(tap)..onset_s(tap) + held_s).contains(&t));
+                // The colour follows with a time constant of 0.15 s.
+                level += (f64::from(u8::from(is_pressed)) - level) * (1.0 - (-1.0 / RATE_HZ / 0.15_f64).exp());
+                25.0 * level + normal()
+            });
+            let rows = rows_of(&time_s, values.collect());
+            let presses: Vec<&Row> = rows.iter().filter(|row| row.event == Event::Press).collect();
+            assert!(presses.len() == 8 && rows.len() == 16, "{held_s} {pause_s} {seed}: {}", rows.len());
+            for (tap, press) in (0..).zip(presses) {
+                let (from_s, to_s) = press.span_s().expect("each is let go");
+                let off_s = [from_s - onset_s(tap), to_s - onset_s(tap) - held_s];
+                // A release is seen late by what the means hold of the next press.
+                assert!(off_s.iter().all(|off_s| off_s.abs() <= 0.2), "{held_s} {pause_s} {seed}: {off_s:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_video_that_begins_while_the_finger_presses_is_doubted() {
     let (time_s, values) = trace(15.0, [0.2, 0.3], 8.0, 0.0, 14.0, 5);
     let said = |proximal: f64, distal: f64| {
