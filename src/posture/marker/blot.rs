@@ -7,7 +7,7 @@
 //! may change. Inside of the outline all counts alike, whatever shines there, and on its edge as much as its share.
 //!
 //! The standard error has two parts: that of noise on the edge, and that of the outline itself, which stays for many
-//! frames.
+//! frames: what is within it is a matter of opinion, the more so where paint covers a part of the mark thinly.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -32,6 +32,13 @@ const SURROUND_PX: usize = 7;
 /// one standard error.
 const LEVELS_SHARE: f64 = 0.23;
 const BEND: f64 = 0.018;
+/// Share from which a sample about the outline is thin paint of the same mark.
+const THIN: f32 = 0.2;
+/// The centre is up to so far from that of all paint where there is no thin one (measured: whole marks of phantoms at
+/// most 0.25); what is beyond is the standard error of both coordinates. Of two films of marks painted unevenly onto
+/// photographs of real hands, radii of 5 to 9 pixels, 187 of 530 angles were more than a degree and three standard
+/// errors off without it, none with it.
+const THIN_PX: f64 = 0.2;
 /// Areas differ by this (logarithm) from codec and stretch; beyond, a part may be hidden, and the centre off by up to
 /// so many radii times the rest (a segment cut off a disc: 0.8 to 1 times its share of the area).
 const AREA_FREE: f64 = 0.08;
@@ -480,12 +487,27 @@ impl Window {
         };
         // Skin that bends along the mark moves its centroid by its curvature times its second moment.
         let bent = (BEND * outline.spread_px2()[0]).powi(2) / (area_px2 / std::f64::consts::PI);
+        let with_thin = self.with_thin(drawn);
+        let thin = (0..2).map(|axis| (with_thin[axis] - at_px[axis]).powi(2)).sum::<f64>() - THIN_PX * THIN_PX;
+        let either = bent + thin.max(0.0);
         outline.lasting_px2 = [
-            LEVELS_SHARE * shift[0] * shift[0] + bent,
+            LEVELS_SHARE * shift[0] * shift[0] + either,
             LEVELS_SHARE * shift[0] * shift[1],
-            LEVELS_SHARE * shift[1] * shift[1] + bent,
+            LEVELS_SHARE * shift[1] * shift[1] + either,
         ];
         outline
+    }
+
+    /// The centroid with what hangs together with the mark around it and is painted thinly.
+    fn with_thin(&self, drawn: &Drawn) -> [f64; 2] {
+        let near = -((SURROUND_PX + EDGE_PX) as i8);
+        let set: Vec<u8> = (0..self.samples.len())
+            .map(|k| u8::from(drawn.depth[k] > 0 || (drawn.share[k] >= THIN && drawn.depth[k] >= near)))
+            .collect();
+        let Parts { all, labels } = parts(&set, [self.width, self.height], Neighbours::Four);
+        let deepest = (0..labels.len()).max_by_key(|&k| drawn.depth[k]).unwrap_or_default();
+        let [x, y] = all[(labels[deepest] - 1) as usize].centroid;
+        [self.left as f64 + x, self.top as f64 + y]
     }
 }
 

@@ -166,3 +166,26 @@ fn a_disc_is_no_blot() {
     let look = Look::learn(&picture.frame(0, 0.0), siting, [60.0, 50.0], 10.0, &mut Default::default());
     assert!(look.is_some_and(|look| look.blot.is_none()));
 }
+
+#[test]
+fn paint_that_is_thin_on_one_side_has_a_larger_standard_error() {
+    let siting = Siting { dx_px: 0.5, dy_px: 0.5 };
+    let seen = |thin: f64| {
+        let mut stage = finger(0);
+        let mark = stage.blots[1];
+        // Paint of which a share lies on the skin, and on half of it all of it.
+        let colour =
+            std::array::from_fn(|k| (thin * f64::from(PAINT[k]) + (1.0 - thin) * f64::from(SKIN[k])).round() as u8);
+        stage.blots[1] = stage::Blot { colour, ..mark };
+        let [x, y] = mark.at;
+        stage.blots.push(stage::Blot { at: [x - 5.0, y], radius: 0.6 * mark.radius, ..mark });
+        let (_, outline) = Blot::learn(&stage.picture(1).frame(0, 0.0), siting, [x - 3.0, y], 8.0).unwrap();
+        let real = mark.centroid();
+        let off_px = (outline.at_px[0] - real[0]).hypot(outline.at_px[1] - real[1]);
+        (off_px, (outline.lasting_px2[0] + outline.lasting_px2[2]).sqrt())
+    };
+    let [(whole_off_px, whole_sd_px), (off_px, sd_px)] = [seen(1.0), seen(0.35)];
+    println!("whole: {whole_off_px:.2} px off of {whole_sd_px:.2}, thin: {off_px:.2} of {sd_px:.2}");
+    assert!(whole_off_px < 0.3 && whole_sd_px < 0.3, "{whole_off_px} {whole_sd_px}");
+    assert!(off_px > 1.0 && off_px < 2.0 * sd_px, "{off_px} {sd_px}");
+}
