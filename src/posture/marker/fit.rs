@@ -23,6 +23,8 @@ pub(crate) struct Fit {
     pub(crate) chroma_shift_px: Option<([f64; 2], f64)>,
     /// What a blot's centre is the centroid of; none for a disc.
     pub(crate) outline: Option<Outline>,
+    /// Its centre is held near where its colour lies, beside that of the fitted disc.
+    pub(crate) is_held: bool,
 }
 
 impl Fit {

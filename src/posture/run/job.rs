@@ -11,12 +11,12 @@ use crate::posture::angle::joints::Angles;
 use crate::posture::angle::readout::{Readout, Rolling, Rows};
 use crate::posture::angle::view::View;
 use crate::posture::error::PostureError;
-use crate::posture::layout::{Layout, MarkerShape};
+use crate::posture::layout::{Joint, Layout, MarkerShape};
 use crate::posture::marker::looks::siting::Siting;
 use crate::posture::options::{Outputs, PostureOptions};
 use crate::posture::run::filmed_clock::FilmedClock;
 use crate::posture::run::plan::{Known, OUTLINES, WHOLE_FRAMES, steps};
-use crate::posture::run::report::{MarkerSums, PostureFigures, PostureReport, SearchReport, VideoReport};
+use crate::posture::run::report::{JointReport, MarkerSums, PostureFigures, PostureReport, SearchReport, VideoReport};
 use crate::posture::run::results::{Results, Row};
 use crate::posture::suggest::Suggester;
 use crate::posture::survey::{Progress, Survey, Surveyor};
@@ -101,12 +101,13 @@ pub fn run(
     warnings.extend(span.slow_readout(layout.readout_s));
     warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());
-    warnings.extend(late(layout, &survey, &results.markers));
+    let joints = results.joint_reports();
+    warnings.extend(late(layout, &survey, &results.markers, &joints));
     let figures = PostureFigures {
         video: video_report(path, &info, survey.siting, &span),
         frames: results.frames,
         markers: results.marker_reports(|marker| tracker.shape(marker)),
-        joints: results.joint_reports(),
+        joints,
         coupling: results.coupling(),
         clock: clock.map(|clock| clock.report),
         readout_ms: rolling.readout_ms(),
@@ -132,17 +133,28 @@ pub fn run(
     results.finish(report, &stages, outputs.report)
 }
 
-/// The markers that no frame shows, or only frames after those that names were given by.
-fn late(layout: &Layout, survey: &Survey, markers: &[MarkerSums]) -> Vec<String> {
-    let of = |marker: &usize| {
-        let name = &layout.markers[*marker].name;
-        match markers[*marker].first_frame {
+/// The markers that no frame shows, or only frames after those that names were given by; and joints that no frame
+/// shows though it shows each of their markers.
+fn late(layout: &Layout, survey: &Survey, markers: &[MarkerSums], joints: &[JointReport]) -> Vec<String> {
+    let needed = layout.needed();
+    let of = |marker: usize| {
+        let name = &layout.markers[marker].name;
+        match markers[marker].first_frame {
             None => Some(format!("{name} is seen in no frame; --overlay shows what was tracked")),
-            Some(frame) if frame >= survey.frames as u64 => Some(format!("{name} is not seen before frame {frame}")),
+            Some(frame) if survey.unseen.contains(&marker) && frame >= survey.frames as u64 => {
+                Some(format!("{name} is not seen before frame {frame}"))
+            }
             Some(_) => None,
         }
     };
-    survey.unseen.iter().filter_map(of).collect()
+    let mut said: Vec<String> = (0..markers.len()).filter(|&marker| needed[marker]).filter_map(of).collect();
+    let of = |(joint, report): (&Joint, &JointReport)| {
+        let mut markers_of = joint.segments.iter().flat_map(|&segment| layout.segments[segment].markers);
+        (report.frames == 0 && markers_of.all(|marker| markers[marker].first_frame.is_some()))
+            .then(|| format!("{} is known in no frame: none shows all of its markers", joint.name))
+    };
+    said.extend(layout.joints.iter().zip(joints).filter_map(of));
+    said
 }
 
 /// Threads that decode.
@@ -311,7 +323,7 @@ mod tests {
         let mut markers = vec![MarkerSums::default(); 3];
         markers[0].add(42, &Sight::Seen(centre));
         markers[1].add(300, &Sight::Seen(centre));
-        let late = late(&layout, &survey, &markers);
+        let late = late(&layout, &survey, &markers, &[]);
         assert_eq!(late.len(), 2, "{late:?}");
         assert!(late[0].starts_with("b ") && late[0].contains("300") && late[1].starts_with("c "), "{late:?}");
     }

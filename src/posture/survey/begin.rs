@@ -18,6 +18,8 @@ const START_SHARE: f64 = 0.02;
 const TO_THE_NEXT: f64 = 0.5;
 /// A mark of another colour than the marker file's is taken where their hues differ by less than this.
 const SAME_HUE_RAD: f64 = 0.7;
+/// What differs by less from the marker file's colour, in each plane, is that colour, levels (assumed).
+const SAME_LEVELS: f64 = 12.0;
 /// Half the side of the square whose mean colour is said, luma samples.
 const SAID_PX: usize = 2;
 
@@ -105,12 +107,15 @@ impl Surveyor<'_> {
             of_colour.map(|spot| spot.points[0].at_px).min_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at)));
         let shown = |at: [f64; 2]| self.info.turn.shown_from_stored(at, size);
         let colour = there.map_or_else(|| colour_at(frame, at), |blob| blob.colour);
+        let wanted = Paint::new(self.layout.markers[marker].colour, &self.info.matrix, self.info.grey).colour;
+        let is_there = there.is_none() && (0..3).all(|p| (wanted[p] - colour[p]).abs() <= SAME_LEVELS);
         SurveyError::WrongStart {
             marker: self.layout.markers[marker].name.clone(),
             colour: hex(self.layout.markers[marker].colour.map(|part| f64::from(part) / 255.0)),
             at_px: shown(at),
             there: hex(self.info.matrix.to_own_rgb(colour)),
             is_mark: there.is_some(),
+            is_there,
             nearest_px: nearest.map(shown),
         }
     }

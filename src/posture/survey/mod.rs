@@ -92,12 +92,16 @@ pub(crate) enum SurveyError {
     )]
     Branches { markers: Vec<String> },
     #[error(
-        "[start] has {marker} at ({:.0}, {:.0}), where the first frame has {} and no mark of {colour}{}; correct the \
-         place, or the colour under [markers]",
+        "[start] has {marker} at ({:.0}, {:.0}), where the first frame has {} and no mark of {colour}{}; {}",
         at_px[0], at_px[1],
         if *is_mark { format!("a mark of {there}") } else { there.clone() },
         nearest_px.map_or(", nor is there one anywhere".to_owned(), |[x, y]| format!(" (the nearest is at ({x:.0}, \
-            {y:.0}))"))
+            {y:.0}))")),
+        if *is_there {
+            "the colour is there, and no other hue than what lies around it: use paint of another hue"
+        } else {
+            "correct the place, or the colour under [markers]"
+        }
     )]
     WrongStart {
         marker: String,
@@ -108,6 +112,8 @@ pub(crate) enum SurveyError {
         there: String,
         /// That colour stands out from its surroundings.
         is_mark: bool,
+        /// It is the wanted colour, and does not stand out.
+        is_there: bool,
         /// The nearest spot of its colour, on the shown picture.
         nearest_px: Option<[f64; 2]>,
     },

@@ -262,10 +262,12 @@ impl Spots {
                         // What moves is longer by its blur.
                         let still = spot.velocity_px[0].hypot(spot.velocity_px[1]) < STILL_RADII * last.radius_px;
                         let looks = disc.as_ref().zip(blot.as_ref());
-                        let looks = looks.filter(|(disc, _)| disc.radius_px > SMALL_RADIUS_PX);
                         let apart = looks
                             .and_then(|(disc, blot)| Apart::of(frame, [disc, blot], last.at_px, &mut self.scratch));
-                        let agree = apart.is_none_or(|apart| apart.errors <= APART_ERRORS);
+                        let is_held = apart.is_some_and(|apart| apart.is_held);
+                        let apart =
+                            apart.filter(|_| disc.as_ref().is_some_and(|disc| disc.radius_px > SMALL_RADIUS_PX));
+                        let agree = !is_held && apart.is_none_or(|apart| apart.errors <= APART_ERRORS);
                         let is_round = |disc: &Look| blot.as_ref().is_none_or(|blot| agree && is_disc(disc, blot));
                         match disc {
                             Some(disc) if is_round(&disc) || (patient && !still) => {
@@ -304,6 +306,8 @@ struct Apart {
     errors: f64,
     /// The variance of a coordinate that it shows beyond these, pixels squared.
     px2: f64,
+    /// The disc's is held near where its colour lies.
+    is_held: bool,
 }
 
 impl Apart {
@@ -312,10 +316,11 @@ impl Apart {
     fn of(frame: &Frame<'_>, looks: [&Look; 2], at_px: [f64; 2], scratch: &mut Scratch) -> Option<Self> {
         let apart = |siting: Siting| {
             let [disc, outline] = looks.map(|look| centre(frame, siting, look, at_px, scratch).ok());
+            let is_held = disc.as_ref()?.is_held;
             let [disc, outline] = [disc?.centre, outline?.centre];
             let variance = |one: &Centre| 0.5 * (one.covariance_px2[0] + one.covariance_px2[2]);
             let (both, off) = (variance(&disc) + variance(&outline), distance(disc.at_px, outline.at_px));
-            Some(Self { errors: off / both.sqrt(), px2: (0.5 * off * off - both).max(0.0) })
+            Some(Self { errors: off / both.sqrt(), px2: (0.5 * off * off - both).max(0.0), is_held })
         };
         Siting::likely(frame).into_iter().filter_map(apart).min_by(|a, b| a.errors.total_cmp(&b.errors))
     }

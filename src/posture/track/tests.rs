@@ -433,6 +433,11 @@ fn a_start_where_nothing_is_and_colours_never_seen_are_told() {
     let layout = pairs([RED; 6], BOTH, "[start]\nm0 = [300.0, 200.0]\n");
     let error = discs(&layout, &stage(), RADIUS, 5, moving, none).run().unwrap_err();
     assert!(matches!(&error, SurveyError::WrongStart { marker, nearest_px: Some(_), .. } if marker == "m0"), "{error}");
+    // Brown, which differs from skin in luma alone.
+    let [x, y] = moving(0)[0];
+    let layout = pairs([[0x77, 0x3f, 0x22]; 6], BOTH, &format!("[start]\nm0 = [{x}, {y}]\n"));
+    let error = discs(&layout, &stage(), RADIUS, 5, moving, none).run().unwrap_err().to_string();
+    assert!(error.contains("m0 at (60, 70)") && error.ends_with("use paint of another hue"), "{error}");
     let layout = pairs(IN_PAIRS, BOTH, "");
     let empty = Film {
         pictures: (0..5).map(|k| stage().picture(k)).collect(),

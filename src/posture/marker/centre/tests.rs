@@ -365,3 +365,32 @@ fn the_standard_error_of_a_streak_holds_its_error() {
     }
     assert!(seen >= 12 && streaks >= 3 && 10 * held >= 9 * seen, "{held} of {seen}, {streaks}");
 }
+
+#[test]
+fn a_disc_whose_chroma_lies_elsewhere_is_held_near_it() {
+    // Yellow on skin: chroma shows more than luma.
+    let look = Look::plain(8.0, YELLOW, SKIN);
+    let of = |look: &Look, chroma_shift_px: Option<[f64; 2]>, rough_px: [f64; 2]| {
+        let centre =
+            Centre { at_px: [50.0, 40.0], covariance_px2: [0.01, 0.0, 0.01], lasting_px2: [0.0; 3], radius_px: 8.0 };
+        let shift = chroma_shift_px.map(|shift| (shift, 0.3));
+        held(Fit { chroma_shift_px: shift, ..look.unfitted(centre, [0.01, 0.0, 0.01]) }, look, rough_px)
+    };
+    let free = of(&look, None, [50.0, 40.0]);
+    let one = of(&look, Some([-3.0, 0.5]), [47.0, 40.0]);
+    // Free within 0.3 + 0.05 x 8 = 0.7 px of the rough place.
+    assert!(one.is_held && (one.centre.at_px[0] - (47.0 + 0.49 / 3.0)).abs() <= 1e-12, "{one:?}");
+    assert!((one.centre.lasting_px2[0] - 0.25 * (9.0 - 0.49)).abs() <= 1e-12 && one.centre.at_px[1] == 40.0, "{one:?}");
+    let black = Look::plain(8.0, [30.0, 128.0, 128.0], SKIN);
+    for (look, shift, rough_px) in [
+        (&look, Some([-3.0, 0.5]), [49.4, 40.0]),
+        (&look, Some([-0.2, 0.0]), [47.0, 40.0]),
+        (&look, Some([3.0, 0.0]), [47.0, 40.0]),
+        (&look, None, [47.0, 40.0]),
+        // Of which luma shows more.
+        (&black, Some([-3.0, 0.5]), [47.0, 40.0]),
+    ] {
+        let one = of(look, shift, rough_px);
+        assert!(!one.is_held && one.centre == free.centre, "{shift:?} {rough_px:?} {one:?}");
+    }
+}

@@ -56,7 +56,18 @@ impl Look {
     /// A marker that looks so and was not fitted, as a fit with this centre.
     pub(crate) fn unfitted(&self, centre: Centre, white_px2: [f64; 3]) -> Fit {
         let Self { marker, background, blur_px, misfit, noise, .. } = *self;
-        Fit { centre, white_px2, marker, background, blur_px, misfit, noise, chroma_shift_px: None, outline: None }
+        Fit {
+            centre,
+            white_px2,
+            marker,
+            background,
+            blur_px,
+            misfit,
+            noise,
+            chroma_shift_px: None,
+            outline: None,
+            is_held: false,
+        }
     }
 
     /// Whether most are no discs.
