@@ -87,10 +87,15 @@ impl Surveyor<'_> {
         self.paint_of[self.chain.links[place].marker]
     }
 
+    /// The paint of the marker file's colour.
+    fn wanted(&self, place: usize) -> Paint {
+        let colour = self.layout.markers[self.chain.links[place].marker].colour;
+        Paint::new(colour, &self.info.matrix, self.info.grey)
+    }
+
     /// Whether a mark may be the marker's, though its colour is not quite the marker file's.
     fn is_about(&self, place: usize, blob: &Blob) -> bool {
-        let colour = self.layout.markers[self.chain.links[place].marker].colour;
-        let paint = Paint::new(colour, &self.info.matrix, self.info.grey);
+        let paint = self.wanted(place);
         paint.is_like(&paint.seen_as(blob.colour), SAME_HUE_RAD)
     }
 
@@ -107,7 +112,7 @@ impl Surveyor<'_> {
             of_colour.map(|spot| spot.points[0].at_px).min_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at)));
         let shown = |at: [f64; 2]| self.info.turn.shown_from_stored(at, size);
         let colour = there.map_or_else(|| colour_at(frame, at), |blob| blob.colour);
-        let wanted = Paint::new(self.layout.markers[marker].colour, &self.info.matrix, self.info.grey).colour;
+        let wanted = self.wanted(place).colour;
         let is_there = there.is_none() && (0..3).all(|p| (wanted[p] - colour[p]).abs() <= SAME_LEVELS);
         SurveyError::WrongStart {
             marker: self.layout.markers[marker].name.clone(),

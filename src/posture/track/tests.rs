@@ -4,7 +4,7 @@ use super::scenes::{Film, Tally, discs};
 use super::*;
 use crate::posture::layout::Marker;
 use crate::posture::stage::{BLACK, BLUE, Disc, GREEN, PAINT, PINK, RED, SKIN, Stage, WALL};
-use crate::posture::survey::{SurveyError, Surveyor};
+use crate::posture::survey::{Progress, SurveyError, Surveyor};
 use crate::video::{Format, Picture};
 
 const RADIUS: f64 = 7.0;
@@ -503,4 +503,27 @@ fn table_of_phantom_scenes() {
         }
     }
     assert_eq!(wrong, 0);
+}
+
+#[test]
+fn what_is_much_smaller_or_larger_than_marks_is_no_mark_passed_over() {
+    let layout = pairs(IN_PAIRS, BOTH, "");
+    let is_passed_over = |radius: f64| {
+        // Between the first two marks, as a fold of the skin may be.
+        let between = |frame: usize| {
+            let [a, b] = [moving(frame)[0], moving(frame)[1]];
+            vec![Disc { at: [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])), radius, colour: GREEN }]
+        };
+        let film = discs(&layout, &stage(), RADIUS, 12, moving, between);
+        let mut surveyor = Surveyor::new(&layout, &film.info);
+        for (k, picture) in film.pictures.iter().enumerate() {
+            if surveyor.look(&picture.frame(k as u64, k as f64 / 30.0)) == Progress::Enough {
+                break;
+            }
+        }
+        let doubts = surveyor.finish().expect("six marks").doubts;
+        doubts.iter().any(|doubt| doubt.contains("lies a mark of the colour of m"))
+    };
+    // 3 and 16 were until sizes were compared.
+    assert_eq!([3.0, RADIUS, 16.0].map(is_passed_over), [false, true, false]);
 }
