@@ -68,6 +68,15 @@ fn forces_or_angles_are_predicted_for_each_row() {
 }
 
 #[test]
+fn a_dead_photodiode_is_warned_of_where_no_force_shows_it() {
+    let dir = models();
+    dir.lunula(&["predict", "force.json", "r.csv", "--out", "p.csv"]).expect(0).never_says("dead");
+    dir.recording("dead.csv", &Recording::of(300..400).map("P3", |_, _| 2.46));
+    let answer = dir.lunula(&["predict", "force.json", "dead.csv", "--out", "p.csv"]).expect(0);
+    answer.says("dead.csv: P3 is 2.46 V in all 100 rows: dead or not connected");
+}
+
+#[test]
 fn force_and_posture_are_gated() {
     let dir = models();
     let truth = Recording::of(300..400);

@@ -104,6 +104,14 @@ impl Columns {
             if let Some((known, _)) = columns.iter().find(|(_, at)| *at == column) {
                 return Err(format!("column `{name}` is given to both {} and {}", known.name(), role.name()));
             }
+            if matches!(role, Role::Force(_)) && guess::is_force_in_another_unit(&names[column]) {
+                return Err(format!(
+                    "column `{}` is given as {}, which is in newtons, and names another unit; write newtons (1 kgf is \
+                     9.80665, 1 lbf 4.44822), or take the unit out of the name where it holds newtons",
+                    names[column],
+                    role.name()
+                ));
+            }
             columns.push((*role, column));
         }
         let mapped: HashSet<Role> = columns.iter().map(|(role, _)| *role).collect();
@@ -340,6 +348,10 @@ mod tests {
 
     #[test]
     fn a_force_in_another_unit_is_said() {
+        for given in ["Fz_N=fz_kgf", "Fz_N=#3"] {
+            let error = chosen(given, "time_s|P1|fz_kgf").unwrap_err();
+            assert!(error.contains("column `fz_kgf` is given as Fz_N, which is in newtons"), "{error}");
+        }
         let choice = Columns::default().choose(&names("time_s|P1|Fz (mN)|fy kgf|Fx_N"), &[]).unwrap();
         assert_eq!(choice.columns.len(), 3);
         let [one, other] = &choice.notes[..] else { panic!("{:?}", choice.notes) };

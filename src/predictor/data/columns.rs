@@ -2,6 +2,8 @@
 
 use lunula_predictor::FORCES;
 
+use crate::log::is_force_in_another_unit;
+
 /// The number of a photodiode: `P12` is 12; `P01` and `P` are none.
 fn number(name: &str) -> Option<u32> {
     let digits = name.strip_prefix('P')?;
@@ -93,7 +95,13 @@ pub(crate) fn missing(name: &str, names: &[String]) -> String {
     let nearest = others.map(|n| (alike(n), n)).filter(|(alike, _)| *alike >= 0.5);
     // Of equals the first.
     let nearest = nearest.rev().max_by(|a, b| a.0.total_cmp(&b.0));
-    let help = nearest.map_or_else(|| ".".to_owned(), |(_, near)| format!("; is it `{near}`?"));
+    let help = match nearest {
+        None => ".".to_owned(),
+        Some((_, near)) if is_force_in_another_unit(near) => {
+            format!("; `{near}` is in another unit: write newtons.")
+        }
+        Some((_, near)) => format!("; is it `{near}`?"),
+    };
     format!("has no column `{name}`{help} {}", listed(names, MOST))
 }
 

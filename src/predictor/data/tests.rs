@@ -121,6 +121,8 @@ fn the_first_wrong_cell_by_line_is_told() {
 fn missing_columns_are_told_with_the_nearest_and_all() {
     let said = refusal("time_s,P1,fz_n,Fx_N,Fy_N\n0,1,2,3,4\n", &forces());
     assert!(said.contains("a.csv: has no column `Fz_N`; is it `fz_n`? Its columns are time_s, P1, fz_n"), "{said}");
+    let said = refusal("time_s,P1,Fz_kgf,Fx_N,Fy_N\n0,1,2,3,4\n", &forces());
+    assert!(said.contains("no column `Fz_N`; `Fz_kgf` is in another unit: write newtons. Its columns"), "{said}");
     let said = refusal("time_s,ch1,J2_deg\n0,1,2\n", &angle());
     assert!(said.contains("has no photodiode `P1`") && said.contains("time_s, ch1, J2_deg"), "{said}");
     let wanted = Wanted { inputs: Some(vec!["P8".into()]), ..angle() };
