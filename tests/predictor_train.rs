@@ -244,7 +244,7 @@ fn lags_are_further_inputs_and_both_ways_are_reported() {
     assert!(with <= 1e-14 && plain > 0.1, "{with} with, {plain} without");
     near(&numbers(&dir.parsed("m.json")["model"]["jacobian"][0]), &[0.0, 0.0, 1.0, 0.0], 1e-14);
     // Forces in each second row: the past of a prediction is not that of the training.
-    let sparse = |row: usize, cell: &str| if row % 2 == 0 { cell.to_owned() } else { String::new() };
+    let sparse = |row: usize, cell: &str| if row.is_multiple_of(2) { cell.to_owned() } else { String::new() };
     dir.recording("sparse.csv", &late(0..120).with("Fz_N", sparse));
     let warned = "sparse.csv: 60 of 120 rows have an empty cell; the past that --lags reads";
     dir.train("sparse.csv", "Fz_N", "s.json", &["--lags", "0.2"]).expect(0).says(warned);

@@ -64,8 +64,8 @@ const FREE_RADII: f64 = 0.05;
 /// knows nothing; 0.5 px is what chroma that is assumed in the wrong place makes).
 const SAID: f64 = 0.5;
 const LEAST_SAID_PX: f64 = 0.6;
-/// The standard error of a coordinate, as a share of how far the two are apart beyond that (measured on the same: 0.3 to
-/// 0.5).
+/// The standard error of a coordinate, as a share of how far the two are apart beyond that (measured on the same: 0.3
+/// to 0.5).
 const HELD_SD: f64 = 0.5;
 /// By how much a radius may differ from the learned one, as a share, and in pixels.
 const RADIUS_CHANGE: f64 = 0.08;

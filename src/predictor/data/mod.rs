@@ -89,8 +89,8 @@ pub struct Read {
 }
 
 impl Read {
-    /// What to say where past voltages are read as well: rows with an empty cell are no part of the past, while those who
-    /// predict read all of it.
+    /// What to say where past voltages are read as well: rows with an empty cell are no part of the past, while those
+    /// who predict read all of it.
     pub(in crate::predictor) fn sparse_past(&self) -> impl Iterator<Item = String> {
         let is_sparse = |file: &&FileRows| file.empty as f64 > SPARSE * file.rows as f64;
         self.files.iter().filter(is_sparse).map(|file| {
@@ -111,8 +111,8 @@ impl Read {
     }
 }
 
-/// Past voltages are sparse where more than this share of a file's rows is left out for an empty cell (assumed; with forces
-/// in each tenth row, errors of 0.32 N were said to be 0.14).
+/// Past voltages are sparse where more than this share of a file's rows is left out for an empty cell (assumed; with
+/// forces in each tenth row, errors of 0.32 N were said to be 0.14).
 const SPARSE: f64 = 0.1;
 
 /// A file that was skipped.

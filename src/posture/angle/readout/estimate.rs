@@ -5,8 +5,8 @@
 //! later; where the segment moves along itself at `v`, it seems longer by `readout d v`. Lengths that depend on the
 //! direction (skin that slides, a camera that looks obliquely, a wrong lens) are fitted beside it, by the sine and
 //! cosine of the direction and of its double; what goes there and back meets each direction at both speeds. The
-//! standard error is the jackknife's over stretches of the video, and what the markers' lasting errors make of it, which
-//! light and shade take along as the finger moves.
+//! standard error is the jackknife's over stretches of the video, and what the markers' lasting errors make of it,
+//! which light and shade take along as the finger moves.
 //!
 //! What is not determined: anything where no segment moves along itself, or the finger lies along the rows.
 
@@ -30,8 +30,8 @@ const STRETCH_FRAMES: u64 = 16;
 const FEWEST_STRETCHES: usize = 6;
 /// Directions that a segment hardly takes are no reason for its length.
 const NEGLIGIBLE: f64 = 1e-9;
-/// The share of the markers' lasting errors that may go with the speed (assumed; paint with a shaded side on photographs
-/// of real hands made 27 ms, of standard error 5 without this, of lengths that change by 0.06 px).
+/// The share of the markers' lasting errors that may go with the speed (assumed; paint with a shaded side on
+/// photographs of real hands made 27 ms, of standard error 5 without this, of lengths that change by 0.06 px).
 const WITH_SPEED: f64 = 0.3;
 /// A read-out time is believed beyond so many standard errors and so many milliseconds. Measured on eleven kinds of
 /// phantoms without a rolling shutter: at most 1.8 standard errors; where these are below 3 ms, at most 2.3 ms.
