@@ -74,6 +74,15 @@ fn a_dead_photodiode_is_warned_of_where_no_force_shows_it() {
     dir.recording("dead.csv", &Recording::of(300..400).map("P3", |_, _| 2.46));
     let answer = dir.lunula(&["predict", "force.json", "dead.csv", "--out", "p.csv"]).expect(0);
     answer.says("dead.csv: P3 is 2.46 V in all 100 rows: dead or not connected");
+    // One that hangs for a while shows beside those that it goes with.
+    let all = Recording::of(0..300);
+    let (first, second) = (all.numbers("P1"), all.numbers("P2"));
+    let beside = all.map("P3", |row, _| 0.5 * (first[row] + second[row]));
+    dir.recording("goes.csv", &beside);
+    dir.lunula(&["predict", "force.json", "goes.csv", "--out", "p.csv"]).expect(0).never_says("did it hang?");
+    dir.recording("hangs.csv", &beside.map("P3", |row, v| if (130..220).contains(&row) { 2.46 } else { v }));
+    let answer = dir.lunula(&["predict", "force.json", "hangs.csv", "--out", "p.csv"]).expect(0);
+    answer.says("hangs.csv: P3 doesn't change by a digit in 90 rows from 5.2 to 8.8 s");
 }
 
 #[test]

@@ -24,7 +24,7 @@ mod trajectory;
 pub use algebra::svd::{Modes, modes};
 pub use contact::friction::{FrictionCone, FrictionFault};
 pub use contact::gate::{Contact, Gate, GateFault, GateState};
-pub use data::dataset::{Dataset, DatasetFault, Recording};
+pub use data::dataset::{Dataset, DatasetFault, Past, Recording};
 pub use data::delay::{Delay, delays};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
 pub use data::mismatch::{Apart, Difference, Mismatch, Parts, beside_model};

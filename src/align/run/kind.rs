@@ -83,7 +83,7 @@ impl Job for AlignJob {
             Part::pictures("training-labels.png"),
         ],
     )
-    .revision(11);
+    .revision(12);
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         match role {

@@ -48,7 +48,7 @@ impl Job for FitOptions {
                 Part::pictures(""),
             ],
         )
-        .revision(10)
+        .revision(11)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

@@ -21,7 +21,7 @@ impl Job for LayoutOptions {
         ],
         &[Part::new("layout", POSITIONS), Part::new("table", TABLE), Part::pictures("")],
     )
-    .revision(11);
+    .revision(12);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let data: Vec<&Foreseen> = inputs.iter().filter(|input| input.role == "data").collect();

@@ -52,7 +52,7 @@ fn cost(inputs: &[Foreseen], row_s: f64) -> (u64, f64) {
 impl Job for TuneOptions {
     const KIND: Kind =
         Kind::of::<Self>("switch-tune", &[RECORDINGS, MODEL], &[Part::new("switch", SWITCH), Part::pictures("")])
-            .revision(8);
+            .revision(9);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(tune_plan(recordings(inputs), &demand.outputs("")))
@@ -77,7 +77,7 @@ impl Job for ContactOptions {
         &[RECORDINGS, MODEL, Role::new("switch", Takes::One, "a switch: switch.toml")],
         &[Part::new("presses", "presses.csv"), Part::pictures("")],
     )
-    .revision(8);
+    .revision(9);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(evaluate_plan(recordings(inputs), &demand.outputs("")))

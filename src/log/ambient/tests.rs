@@ -246,10 +246,19 @@ fn signals_that_turn_or_rest_are_not_called_saturated() {
     let coarse = time_s.iter().map(|t| ((2.0 + (TAU * t / 3.0).sin()) * 100.0).round() / 100.0).collect();
     let rest = time_s.iter().map(|t| quantized(2.0 - (-t / 0.5).exp())).collect();
     let halves = time_s.iter().map(|t| quantized(2.0 - (TAU * t.min(7.5) / 15.0).cos())).collect();
+    // Presses from rest and back, a step of 8 bits from row to row.
+    let steps = |k: usize| (91.0 + ((k % 60) as f64 - 10.0).abs().min(9.0)) * 5.0 / 255.0;
+    let presses = (0..3000).map(|k| (steps(k) * 1e4).round() / 1e4).collect();
     let log = log(
         time_s,
         None,
-        vec![channel("P1", crests), channel("P2", coarse), channel("P3", rest), channel("P4", halves)],
+        vec![
+            channel("P1", crests),
+            channel("P2", coarse),
+            channel("P3", rest),
+            channel("P4", halves),
+            channel("P5", presses),
+        ],
     );
     let samples = all(&log);
     assert!(samples.faults.iter().all(String::is_empty), "{:?}", samples.notes);

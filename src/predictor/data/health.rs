@@ -30,7 +30,7 @@ pub(super) fn warnings(source: &Source, targets: &[String], keep_faults: bool) -
     for (name, values) in photodiodes {
         let seen = seen(values);
         let Some(&first) = seen.first() else { continue };
-        if seen.len() > 1 && seen.iter().all(|&value| value == first) {
+        if seen.len() >= FEW && seen.iter().all(|&value| value == first) {
             warnings.push(format!(
                 "{file}: {name} is {} V in all {} rows: dead or not connected",
                 short(first),
@@ -56,7 +56,7 @@ pub(super) fn warnings(source: &Source, targets: &[String], keep_faults: bool) -
     warnings
 }
 
-/// Of fewer rows a cell may keep its value by chance (assumed).
+/// Of fewer rows a cell or a photodiode may keep its value by chance (assumed).
 const FEW: usize = 10;
 
 /// Cells of a file that have a single value. Noise changes the last digit of every other.
@@ -79,14 +79,16 @@ fn copies(source: &Source) -> impl Iterator<Item = String> {
     let photodiodes: Vec<(&String, &Vec<f64>)> =
         source.inputs.iter().zip(&source.x).filter(|(name, _)| cell(name).is_none()).collect();
     let count = photodiodes.len();
-    let is_copy = |one: &[f64], other: &[f64]| {
-        let mut both = one.iter().zip(other).filter(|(one, _)| !one.is_nan());
-        let first = both.clone().next().map(|(value, _)| *value);
-        both.clone().any(|(value, _)| Some(*value) != first) && both.all(|(one, other)| one == other)
+    let moves = |values: &[f64]| {
+        let mut known = values.iter().filter(|value| !value.is_nan());
+        let first = known.next();
+        known.any(|value| Some(value) != first)
     };
+    let is_copy = |one: &[f64], other: &[f64]| one.iter().zip(other).all(|(one, other)| one.is_nan() || one == other);
     let of = move |k: usize| {
         let (name, values) = photodiodes[k];
-        let (other, _) = photodiodes[..k].iter().find(|(_, other)| is_copy(values, other))?;
+        let before = if moves(values) { &photodiodes[..k] } else { &[] };
+        let (other, _) = before.iter().find(|(_, other)| is_copy(values, other))?;
         Some(format!("{name} is {other} in all rows: is one of them a copy of the other's column?"))
     };
     (0..count).filter_map(of)

@@ -28,7 +28,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use lunula_predictor::{Dataset, DatasetFault, Recording, recording_hashes};
+use lunula_predictor::{Dataset, DatasetFault, Past, Recording, recording_hashes};
 use ndarray::Array2;
 use rayon::prelude::*;
 
@@ -89,31 +89,11 @@ pub struct Read {
 }
 
 impl Read {
-    /// What to say where past voltages are read as well: rows with an empty cell are no part of the past, while those
-    /// who predict read all of it.
-    pub(in crate::predictor) fn sparse_past(&self) -> impl Iterator<Item = String> {
-        let is_sparse = |file: &&FileRows| file.empty as f64 > SPARSE * file.rows as f64;
-        self.files.iter().filter(is_sparse).map(|file| {
-            format!(
-                "{}: {} of {} rows have an empty cell; the past that --lags reads is interpolated between the others, \
-                 but predict and live read all rows, and answer worse than is said: fill in what was measured more \
-                 seldom, or leave out --lags",
-                file.path.display(),
-                file.empty,
-                file.rows
-            )
-        })
-    }
-
     /// What was done to raw logs, and which columns were guessed.
     pub(crate) fn notes(&self) -> impl Iterator<Item = String> {
         self.files.iter().flat_map(|file| file.notes.iter().cloned())
     }
 }
-
-/// Past voltages are sparse where more than this share of a file's rows is left out for an empty cell (assumed; with
-/// forces in each tenth row, errors of 0.32 N were said to be 0.14).
-const SPARSE: f64 = 0.1;
 
 /// A file that was skipped.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -236,7 +216,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     let inputs = sources[0].inputs.clone();
     let (mut files, mut parts) = (Vec::with_capacity(sources.len()), Vec::with_capacity(sources.len()));
     let mut recordings: Vec<Recording> = Vec::new();
-    let (mut time_s, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut time_s, mut x, mut y, mut past) = (Vec::new(), Vec::new(), Vec::new(), Past::default());
     for (source, called) in sources.iter().zip(data) {
         warnings.extend(source.warnings.iter().cloned());
         let (path, notes) = (source.path.clone(), source.notes.clone());
@@ -248,8 +228,10 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
                 file.faults += 1;
             } else if source.invalid[row] {
                 file.invalid += 1;
+                splitter.pass(row);
             } else if source.lacks(row, wanted.cells) {
                 file.empty += 1;
+                splitter.pass(row);
             } else {
                 file.used += 1;
                 splitter.take(row);
@@ -258,7 +240,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
                 y.extend(source.y.iter().map(|column| column[row]));
             }
         }
-        splitter.finish(&mut recordings, &mut warnings);
+        splitter.finish(&mut recordings, &mut past, &mut warnings);
         warnings.extend(health::warnings(source, &wanted.targets, wanted.rows.keep_faults));
         if file.used == 0 {
             let columns = source.inputs.iter().chain(&wanted.targets).zip(source.empty_cells());
@@ -279,7 +261,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         Array2::from_shape_vec((rows, columns), values).expect("every row gives as many values")
     };
     let make = if wanted.cells { Dataset::with_hidden } else { Dataset::new };
-    let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
+    let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?.with_past(past)?;
     warnings.extend(twice(&data));
     let names = |of: fn(&Recording) -> &String| data.recordings().iter().map(move |one| of(one).as_str());
     warnings.extend(twins("subjects", names(|one| &one.subject)));
@@ -320,10 +302,18 @@ pub fn read_inputs(path: &Path, inputs: &[String], rows: &RowOptions) -> Result<
     let called = DataFile::from(path.to_owned());
     let mut splitter = Splitter::new(&source, &called, 0);
     (0..source.rows()).for_each(|row| splitter.take(row));
-    splitter.finish(&mut recordings, &mut warnings);
+    splitter.finish(&mut recordings, &mut Past::default(), &mut warnings);
     warnings.extend(health::warnings(&source, &[], rows.keep_faults));
     let x = Array2::from_shape_fn((source.rows(), inputs.len()), |(row, column)| source.x[column][row]);
     let Source { time_s, faulty, notes, .. } = source;
+    if inputs.iter().all(|name| cell(name).is_none()) {
+        let is_sound = |row: &usize| rows.keep_faults || !faulty[*row];
+        let whole = (0..faulty.len()).filter(|row| is_sound(row) && x.row(*row).iter().all(|value| value.is_finite()));
+        let none = Array2::zeros((faulty.len(), 0));
+        let all =
+            Dataset::with_hidden(inputs.to_vec(), Vec::new(), time_s.clone(), x.clone(), none, recordings.clone())?;
+        warnings.extend(frozen::warnings(&all.only_rows(&whole.collect::<Vec<_>>())));
+    }
     Ok(Inputs { time_s, x, faulty, recordings, notes, warnings })
 }
 

@@ -1,6 +1,9 @@
-//! A file's rows into recordings: a new one where session, subject or trajectory change, or time goes back.
+//! A file's rows into recordings: a new one where session, subject or trajectory change, or time goes back. Rows that
+//! are not used for want of a target are the past of the next one that is, where both are of one part.
 
-use lunula_predictor::Recording;
+use std::mem;
+
+use lunula_predictor::{Past, Recording};
 
 use super::DataFile;
 use super::source::Source;
@@ -18,12 +21,30 @@ pub(super) struct Splitter<'a> {
     starts: Vec<(usize, Option<usize>)>,
     /// Where time went back: from, to.
     resets: Vec<[f64; 2]>,
+    /// Rows that were passed over since the last that was taken.
+    passed: Vec<usize>,
+    past: Past,
 }
 
 impl<'a> Splitter<'a> {
     /// For a file, as it is called, after `before` rows of others.
     pub(super) fn new(source: &'a Source, called: &'a DataFile, before: usize) -> Self {
-        Self { source, called, taken: before, group: None, last_s: f64::NAN, starts: Vec::new(), resets: Vec::new() }
+        Self {
+            source,
+            called,
+            taken: before,
+            group: None,
+            last_s: f64::NAN,
+            starts: Vec::new(),
+            resets: Vec::new(),
+            passed: Vec::new(),
+            past: Past::default(),
+        }
+    }
+
+    /// Passes over a row that has no targets, and whose voltages are none the less what the sensor said.
+    pub(super) fn pass(&mut self, row: usize) {
+        self.passed.push(row);
     }
 
     pub(super) fn take(&mut self, row: usize) {
@@ -46,12 +67,21 @@ impl<'a> Splitter<'a> {
         if !time_s.is_nan() {
             self.last_s = time_s;
         }
+        let since = group.map_or(0, |k| groups[k].0);
+        for passed in mem::take(&mut self.passed).into_iter().filter(|&passed| passed >= since) {
+            self.past.before.push(self.taken);
+            self.past.time_s.push(self.source.time_s[passed]);
+            self.past.x.extend(self.source.x.iter().map(|column| column[passed]));
+        }
         self.group = group;
         self.taken += 1;
     }
 
-    /// The recordings; warns where time went back.
-    pub(super) fn finish(self, recordings: &mut Vec<Recording>, warnings: &mut Vec<String>) {
+    /// The recordings, and what came before their rows; warns where time went back.
+    pub(super) fn finish(self, recordings: &mut Vec<Recording>, past: &mut Past, warnings: &mut Vec<String>) {
+        past.before.extend(self.past.before);
+        past.time_s.extend(self.past.time_s);
+        past.x.extend(self.past.x);
         let DataFile { path, name: file, session: own_session, subject: own_subject } = self.called;
         let several = self.starts.len() > 1;
         for (k, &(start, group)) in self.starts.iter().enumerate() {

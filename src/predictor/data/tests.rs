@@ -108,6 +108,20 @@ fn rows_are_left_out_and_counted_once() {
 }
 
 #[test]
+fn rows_without_targets_are_the_past_of_the_next_row_of_their_part() {
+    let text = "time_s,P1,J2_deg,session,sensor_status\n0,1,,a,ok\n1,2,5,a,ok\n2,3,,a,ok\n3,4,,b,ok\n4,5,,b,saturated: \
+                P1\n5,,,b,ok\n6,7,x,b,ok\n7,8,6,b,ok\n8,9,,b,ok\n";
+    let read = read(text, &Wanted { rows: dropping(), ..angle() }).unwrap();
+    let lags = lunula_predictor::Lags::new(vec![1.0], 4.0).unwrap();
+    let wide = lags.expand(&read.data).unwrap().data;
+    // The last row of `a` is no past of `b`'s, a saturated one nobody's.
+    assert_eq!(wide.x(), &ndarray::array![[2.0, 1.0], [8.0, 7.0]]);
+    let three = lunula_predictor::Lags::new(vec![3.5], 4.0).unwrap().expand(&read.data).unwrap();
+    assert_eq!((three.data.x(), three.kept), (&ndarray::array![[8.0, 4.5]], vec![1]));
+    assert!(lunula_predictor::Lags::new(vec![4.5], 4.0).unwrap().expand(&read.data).is_err());
+}
+
+#[test]
 fn the_first_wrong_cell_by_line_is_told() {
     let said = refusal("P1,J2_deg,time_s\n1,2,3\n2,3,soon\nx,3,4\n", &angle());
     assert!(said.contains("a.csv:3: column `time_s`: `soon`"), "{said}");
@@ -336,8 +350,9 @@ fn columns_named_twice_are_told_with_where() {
     assert!(refusal("P1,J2_deg\n1,2\n", &both).contains("is both an input and a target"));
     let said = refusal("0.1,0.2\n1,2\n", &Wanted { inputs: Some(vec!["P1".into()]), ..angle() });
     assert!(said.contains("holds numbers where the names"), "{said}");
-    let dead = read("P1,J2_deg\n1e-300,20\n1e-300,30\n", &angle()).unwrap();
-    assert!(dead.warnings[0].contains("P1 is 1e-300 V in all 2 rows"), "{:?}", dead.warnings);
+    let same = |rows: usize| read(format!("P1,J2_deg\n{}", "1e-300,20\n".repeat(rows)), &angle()).unwrap().warnings;
+    assert!(same(10)[0].contains("P1 is 1e-300 V in all 10 rows"), "{:?}", same(10));
+    assert_eq!(same(9), Vec::<String>::new(), "by chance");
 }
 
 fn called(columns: &str) -> LogReading {

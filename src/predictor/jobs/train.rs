@@ -175,9 +175,6 @@ pub fn train(
         // A begin of a recording is no loss.
         if 10 * without_past > read.data.rows() { warnings.push(what) } else { notes.push(what) }
     }
-    if !recipe.lags_s.is_empty() {
-        warnings.extend(all().flat_map(Read::sparse_past));
-    }
     warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
     warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
     warnings.extend(predictor.cone().and_then(|cone| outside_cone(cone, read.data.y().view())));

@@ -2,6 +2,7 @@
 //! from.
 
 use std::collections::HashSet;
+use std::iter;
 use std::ops::Range;
 
 use ndarray::{Array2, Axis};
@@ -28,7 +29,8 @@ impl Recording {
 }
 
 /// Voltages and targets. Every value is finite (but for cells that are hidden, [`Dataset::with_hidden`]), every row
-/// belongs to one recording, recordings follow each other.
+/// belongs to one recording, recordings follow each other. Moments whose targets are not known are no rows, but may be
+/// a row's past ([`Dataset::with_past`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
     inputs: Vec<String>,
@@ -37,6 +39,18 @@ pub struct Dataset {
     x: Array2<f64>,
     y: Array2<f64>,
     recordings: Vec<Recording>,
+    past: Past,
+}
+
+/// Voltages of moments without targets, before rows of a [`Dataset`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Past {
+    /// Right before which row each comes, in whose recording; none before the one before it.
+    pub before: Vec<usize>,
+    /// Seconds, on the recording's clock.
+    pub time_s: Vec<f64>,
+    /// Voltages, one moment after the other.
+    pub x: Vec<f64>,
 }
 
 /// Why rows are no [`Dataset`].
@@ -55,6 +69,8 @@ pub enum DatasetFault {
     Twice(String),
     #[error("recording {0} does not begin where the one before ends")]
     Order(String),
+    #[error("moments of the past do not ascend, or are of no row")]
+    Past,
 }
 
 impl Dataset {
@@ -114,7 +130,22 @@ impl Dataset {
         shape("rows of all recordings", next, n)?;
         // Rows lie one after the other in memory: kernels read them as slices.
         let (x, y) = (x.as_standard_layout().into_owned(), y.as_standard_layout().into_owned());
-        Ok(Self { inputs, targets, time_s, x, y, recordings })
+        Ok(Self { inputs, targets, time_s, x, y, recordings, past: Past::default() })
+    }
+
+    /// The same with moments whose targets are not known, from which [`Lags`](crate::Lags) read the past as well. Those
+    /// of which a voltage is not finite are passed over there.
+    pub fn with_past(self, past: Past) -> Result<Self, DatasetFault> {
+        let shape = |what, found, wanted| {
+            if found == wanted { Ok(()) } else { Err(DatasetFault::Shape { what, found, wanted }) }
+        };
+        shape("times of the past", past.time_s.len(), past.before.len())?;
+        shape("voltages of the past", past.x.len(), past.before.len() * self.inputs.len())?;
+        let ascend = past.before.windows(2).all(|pair| pair[0] <= pair[1]);
+        if !ascend || past.before.last().is_some_and(|&last| last >= self.rows()) {
+            return Err(DatasetFault::Past);
+        }
+        Ok(Self { past, ..self })
     }
 
     /// One recording without a name, evenly sampled from time 0.
@@ -172,6 +203,29 @@ impl Dataset {
         &self.recordings
     }
 
+    /// A recording's rows, in order, and before each the moments of its past: which row, seconds, voltages.
+    pub(crate) fn moments<'a>(
+        &'a self,
+        one: &Recording,
+    ) -> impl Iterator<Item = (Option<usize>, f64, &'a [f64])> + use<'a> {
+        one.rows.clone().flat_map(move |row| {
+            let past = self.past_of(row).map(|k| (None, self.past.time_s[k], self.past_x(k)));
+            let x = self.x.row(row).to_slice().expect("a set's rows are in standard layout");
+            past.chain(iter::once((Some(row), self.time_s[row], x)))
+        })
+    }
+
+    fn past_of(&self, row: usize) -> Range<usize> {
+        let before = &self.past.before;
+        let from = before.partition_point(|&before| before < row);
+        from..from + before[from..].partition_point(|&before| before == row)
+    }
+
+    fn past_x(&self, k: usize) -> &[f64] {
+        let width = self.inputs.len();
+        &self.past.x[k * width..(k + 1) * width]
+    }
+
     /// Only the rows of some recordings, by their place in [`recordings`](Self::recordings), in the order given.
     #[must_use]
     pub fn only(&self, recordings: &[usize]) -> Self {
@@ -205,11 +259,22 @@ impl Dataset {
     #[must_use]
     pub fn only_inputs(&self, columns: &[usize]) -> Self {
         let inputs = columns.iter().map(|&k| self.inputs[k].clone()).collect();
+        let past_x =
+            (0..self.past.before.len()).flat_map(|k| columns.iter().map(move |&column| self.past_x(k)[column]));
+        let past = Past { x: past_x.collect(), ..self.past.clone() };
         // `select` puts columns one after the other.
-        Self { inputs, x: self.x.select(Axis(1), columns).as_standard_layout().into_owned(), ..self.clone() }
+        Self { inputs, x: self.x.select(Axis(1), columns).as_standard_layout().into_owned(), past, ..self.clone() }
     }
 
     fn take(&self, rows: &[usize], recordings: Vec<Recording>) -> Self {
+        let mut past = Past::default();
+        for (place, &row) in rows.iter().enumerate() {
+            for k in self.past_of(row) {
+                past.before.push(place);
+                past.time_s.push(self.past.time_s[k]);
+                past.x.extend(self.past_x(k));
+            }
+        }
         Self {
             inputs: self.inputs.clone(),
             targets: self.targets.clone(),
@@ -217,6 +282,7 @@ impl Dataset {
             x: self.x.select(Axis(0), rows),
             y: self.y.select(Axis(0), rows),
             recordings,
+            past,
         }
     }
 }
@@ -251,6 +317,30 @@ mod tests {
         assert_eq!(data.only_inputs(&[1]).x(), &array![[2.0], [4.0], [6.0]]);
         let turned = data.only_inputs(&[1, 0]);
         assert_eq!(turned.x().as_slice().map(|rows| rows[0]), Some(2.0), "rows one after the other");
+    }
+
+    #[test]
+    fn a_rows_past_goes_where_it_goes() {
+        let past = |before: &[usize], time_s: &[f64], x: &[f64]| Past {
+            before: before.to_vec(),
+            time_s: time_s.to_vec(),
+            x: x.to_vec(),
+        };
+        let data = two().with_past(past(&[1, 1, 2], &[0.3, 0.6, -1.0], &[1.5, 2.5, 2.0, 3.0, 4.5, 5.5])).unwrap();
+        let of = |data: &Dataset| -> Vec<(Option<usize>, f64, Vec<f64>)> {
+            let moments = data.recordings().iter().flat_map(|one| data.moments(one));
+            moments.map(|(row, time_s, x)| (row, time_s, x.to_vec())).collect()
+        };
+        let all = of(&data);
+        assert_eq!(all.iter().map(|one| one.0).collect::<Vec<_>>(), [Some(0), None, None, Some(1), None, Some(2)]);
+        assert_eq!((all[2].1, &all[2].2[..]), (0.6, &[2.0, 3.0][..]));
+        assert_eq!(of(&data.only(&[1])), [(None, -1.0, vec![4.5, 5.5]), (Some(0), 0.0, vec![5.0, 6.0])]);
+        assert_eq!(of(&data.only_rows(&[0, 2]))[1].1, -1.0, "without its row it is nobody's");
+        assert_eq!(of(&data.only_inputs(&[1, 0]))[2].2, [3.0, 2.0]);
+        for wrong in [past(&[3], &[0.0], &[1.0; 2]), past(&[1, 0], &[0.0; 2], &[1.0; 4])] {
+            assert_eq!(two().with_past(wrong), Err(DatasetFault::Past));
+        }
+        assert!(two().with_past(past(&[1], &[0.0], &[1.0])).is_err());
     }
 
     #[test]

@@ -87,9 +87,6 @@ pub fn evaluate(
     let own: Vec<usize> = (0..predictor.inputs().len()).collect();
     read.data = read.data.only_inputs(&own);
     warnings.extend(read.warnings.iter().cloned());
-    if predictor.lags().is_some() {
-        warnings.extend(read.sparse_past());
-    }
     let flattered = seen_in_training(&predictor, &read.data);
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
     warnings.extend(not_predicted(&predictor, &values)?);

@@ -19,7 +19,7 @@ impl Job for EvaluateChoices {
         ],
         &[Part::new("merit", "merit.csv"), Part::if_wanted(ROWS, "predicted.csv"), Part::pictures("")],
     )
-    .revision(11);
+    .revision(12);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         // The model says which joints recordings have to hold, once it exists.

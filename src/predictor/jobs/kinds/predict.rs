@@ -18,7 +18,7 @@ impl Job for PredictChoices {
         ],
         &[Part::new("predicted", "predicted.csv")],
     )
-    .revision(5);
+    .revision(6);
 
     fn checked(self) -> Result<Self, OptionFault> {
         self.options().map_err(OptionFault::whole)?;

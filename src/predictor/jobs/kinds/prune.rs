@@ -18,7 +18,7 @@ impl Job for PruneChoices {
         ],
         &[Part::new("subsets", "subsets.csv"), Part::pictures("")],
     )
-    .revision(9);
+    .revision(10);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         only_joints(joints(&self.target), own)

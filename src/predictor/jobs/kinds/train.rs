@@ -26,7 +26,7 @@ impl Job for TrainChoices {
             Part::if_wanted(CURVE, "learning-curve.csv"),
         ],
     )
-    .revision(11);
+    .revision(12);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         only_joints(joints(&self.target), own)

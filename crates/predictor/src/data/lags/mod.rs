@@ -4,7 +4,8 @@
 //! named `P1@-0.1s`, for the linear, quadratic or network model to use (blood takes 0.1 to 0.3 s to come and go, 4.3).
 //! Between two rows of one recording voltages are interpolated linearly, but only where the two are no farther apart
 //! than `longest_gap_s`: twice the median step of the rows that a model was trained on. A row without that much
-//! history is left out and counted.
+//! history is left out and counted. Moments without targets are history all the same, as they are where targets are
+//! predicted: with forces in each tenth row only, errors of 0.32 N were said to be 0.14 without them.
 //!
 //! A set is expanded by the very code that expands a stream, so both give the same bits. Conventions: a moment within a
 //! hundred-thousandth of the longest gap of a row's time is that row's (seconds since 1970 hold no more digits); time
@@ -101,7 +102,8 @@ impl Lags {
     pub fn of(lags_s: Vec<f64>, data: &Dataset) -> Result<Self, LagFault> {
         let mut steps = Vec::new();
         for one in data.recordings() {
-            steps.extend(data.time_s()[one.rows.clone()].windows(2).map(|pair| pair[1] - pair[0]));
+            let times = || data.moments(one).map(|(_, time_s, _)| time_s);
+            steps.extend(times().zip(times().skip(1)).map(|(a, b)| b - a));
         }
         steps.retain(|step| step.is_finite() && *step > 0.0);
         steps.sort_by(f64::total_cmp);
@@ -134,10 +136,9 @@ impl Lags {
         for one in data.recordings() {
             let mut stream = self.stream(inputs);
             let start = kept.len();
-            for row in one.rows.clone() {
-                let x = data.x().row(row);
-                let x = x.as_slice().expect("a set's rows are in standard layout");
-                if stream.push(data.time_s()[row], x, &mut out) {
+            for (row, time_s, x) in data.moments(one) {
+                let has_history = stream.push(time_s, x, &mut out);
+                if let Some(row) = row.filter(|_| has_history) {
                     wide.extend_from_slice(&out);
                     kept.push(row);
                 }
