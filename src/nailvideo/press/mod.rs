@@ -129,6 +129,8 @@ pub(in crate::nailvideo) struct Recording<'a> {
     pub(in crate::nailvideo) time_s: &'a [f64],
     /// Of the photodiodes.
     pub(in crate::nailvideo) traces: &'a [Trace],
+    /// Their standard errors where the nail rests; none where they are not known.
+    pub(in crate::nailvideo) sd: &'a [Option<f64>],
     /// Means over the photodiodes of each end.
     pub(in crate::nailvideo) ends: &'a [Trace],
     /// The skin's own colour about the nail, in the traces' unit.
@@ -159,7 +161,7 @@ pub(in crate::nailvideo) fn reversed(rows: &[Row]) -> Option<String> {
 
 /// The rows of all presses.
 pub(in crate::nailvideo) fn rows(of: &Recording<'_>) -> Vec<Row> {
-    let found = presses(of.time_s, of.traces, of.whole);
+    let found = presses(of.time_s, of.traces, of.sd, of.whole);
     let traces = of.traces.iter().chain(of.ends).map(|trace| (trace, noise_sd(&trace.values)));
     let traces: Vec<(&Trace, Option<f64>)> = traces.collect();
     let mut rows = Vec::new();

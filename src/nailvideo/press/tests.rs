@@ -33,7 +33,8 @@ fn rows_in_light(time_s: &[f64], values: Vec<f64>, skin: &[f64], red: &[f64]) ->
 fn rows_with(time_s: &[f64], trace: Trace, skin: &[f64]) -> Vec<Row> {
     let traces = [trace];
     // Traces are of ratios as encoded, which a press changes 1.85 times less than those of light.
-    rows(&Recording { time_s, traces: &traces, ends: &[], skin, whole: 100.0 / 1.85 })
+    let sd = [noise_sd(&traces[0].values)];
+    rows(&Recording { time_s, traces: &traces, sd: &sd, ends: &[], skin, whole: 100.0 / 1.85 })
 }
 
 /// By how much onset and t90 of releases are off, and whether their intervals hold the truth; of each seed's trace
@@ -311,6 +312,22 @@ fn each_quick_tap_is_a_press() {
 }
 
 #[test]
+fn what_an_encoder_leaves_for_a_while_is_no_press() {
+    let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) / RATE_HZ).collect();
+    // Of eight photodiodes so many are off by 4 for two seconds; their noise from frame to frame is small.
+    let found = |changed: usize, sd: f64| {
+        let one = |k: usize| {
+            let mut normal = normals(k as u64);
+            let off = |t: f64| if k < changed && (3.0..5.0).contains(&t) { 4.0 } else { 0.0 };
+            let values: Vec<f64> = time_s.iter().map(|&t| off(t) + 0.1 * normal()).collect();
+            Trace { name: format!("P{}", k + 1), red: vec![0.0; 300], tint: vec![0.0; 300], values }
+        };
+        find::presses(&time_s, &(0..8).map(one).collect::<Vec<_>>(), &[Some(sd); 8], 100.0).len()
+    };
+    assert_eq!([found(1, 0.1), found(1, 1.4), found(8, 1.4)], [1, 0, 1]);
+}
+
+#[test]
 fn a_video_that_begins_while_the_finger_presses_is_doubted() {
     let (time_s, values) = trace(15.0, [0.2, 0.3], 8.0, 0.0, 14.0, 5);
     let said = |proximal: f64, distal: f64| {
@@ -320,7 +337,9 @@ fn a_video_that_begins_while_the_finger_presses_is_doubted() {
         };
         let (ends, still) = ([end("distal", distal), end("proximal", proximal)], vec![0.0; values.len()]);
         let traces = [end("P3", proximal)];
-        reversed(&rows(&Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &still, whole: 100.0 }))
+        let sd = [noise_sd(&traces[0].values)];
+        let of = Recording { time_s: &time_s, traces: &traces, sd: &sd, ends: &ends, skin: &still, whole: 100.0 };
+        reversed(&rows(&of))
     };
     assert_eq!(said(-1.0, 0.6), None);
     assert!(said(1.0, -0.6).is_some_and(|said| said.starts_with("each of 1 press(es) looks like a release")));

@@ -428,7 +428,7 @@ impl Job<'_> {
         self.stages.time("write", || photodiodes(self.staging, self.outputs, &names, self.light, kept, sd))?;
         let skin: Vec<f64> = kept.iter().map(|row| row.skin).collect();
         let ends = ends(positions, &traces);
-        let recording = Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &skin, whole };
+        let recording = Recording { time_s: &time_s, traces: &traces, sd: &least_sd, ends: &ends, skin: &skin, whole };
         let pressed = self.stages.time("presses", || rows(&recording));
         presses(self.staging, self.outputs, self.light, &pressed)?;
         for sums in &windows {

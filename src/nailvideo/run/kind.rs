@@ -52,7 +52,7 @@ impl Job for NailVideoJob {
             Part::if_wanted(REPORT, "report.html"),
         ],
     )
-    .revision(27);
+    .revision(28);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = self.outputs(Path::new(""), demand);
