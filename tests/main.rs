@@ -46,6 +46,7 @@ mod pipeline_models;
 mod pipeline_pictures;
 mod posture;
 mod posture_bad_input;
+mod posture_on_hands;
 mod predictor_analysis;
 mod predictor_bad_input;
 mod predictor_deficient;

@@ -4,6 +4,7 @@
 
 pub mod browser;
 pub mod desk;
+pub(crate) mod hand_film;
 pub mod page;
 pub(crate) mod real_data;
 pub(crate) mod running;

@@ -87,7 +87,7 @@ impl Job for PostureJob {
             Part::pictures("joints-angles.png"),
         ],
     )
-    .revision(11);
+    .revision(12);
 
     fn depends_on(&self, _said: &Said, demand: &Demand) -> serde_json::Value {
         let made: Vec<&str> = [TRACKS, OVERLAY, Part::PICTURES].into_iter().filter(|part| demand.wants(part)).collect();

@@ -12,9 +12,11 @@ mod begin;
 pub(in crate::posture) mod find;
 mod judge;
 pub(in crate::posture) mod naming;
+mod shapes;
 mod spots;
 
 use judge::Hypothesis;
+use shapes::agree_on_shapes;
 use spots::Spots;
 
 use super::layout::Layout;
@@ -270,10 +272,12 @@ impl<'a> Surveyor<'a> {
             }
         }
         agree_on_shapes(&self.paint_of, &mut starts);
+        let mut doubts = self.passed_over(best);
+        doubts.extend(self.unclear(&mut starts));
         let unseen = (0..starts.len()).filter(|&marker| self.needed[marker] && starts[marker].is_none()).collect();
         Ok(Survey {
             lengths_px: self.lengths(best),
-            doubts: self.passed_over(best),
+            doubts,
             starts,
             siting: self.spots.siting(self.info.chroma_site.map(|(dx_px, dy_px)| Siting { dx_px, dy_px })),
             frames: self.frames,
@@ -334,29 +338,6 @@ impl<'a> Surveyor<'a> {
                     .then_some(0.5 * (shortest + longest))
             })
             .collect()
-    }
-}
-
-/// Where one in so many of the markers of a colour is a blot, the others are paint too, which a disc fits by chance
-/// (measured on 20 films of yellow and white paint on pictures of skin, angles known: 0.45 degrees RMS, and 0.85 off in
-/// the worst median; 0.54 and 2.2 where half of them have to be).
-const OF_A_PAINT: usize = 4;
-
-/// Where a quarter of the markers of a colour are blots, those that a disc fits by chance are blots too.
-fn agree_on_shapes(paint_of: &[usize], starts: &mut [Option<Start>]) {
-    for paint in 0..paint_of.len() {
-        let mut alike: Vec<&mut Start> = paint_of
-            .iter()
-            .zip(starts.iter_mut())
-            .filter(|(of, _)| **of == paint)
-            .filter_map(|(_, s)| s.as_mut())
-            .collect();
-        let blots = alike.iter().filter(|start| start.look.blot.is_some()).count();
-        if blots > 0 && OF_A_PAINT * blots >= alike.len() {
-            for start in &mut alike {
-                start.look = start.as_blot.take().unwrap_or_else(|| start.look.clone());
-            }
-        }
     }
 }
 

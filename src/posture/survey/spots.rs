@@ -21,7 +21,7 @@ const DISC_MISFIT: f64 = 0.02;
 const DISC_ELONGATION: f64 = 1.1;
 /// What is round but leaves more is ragged, unless too small to say so (assumed).
 const RAGGED_MISFIT: f64 = 0.04;
-const SMALL_RADIUS_PX: f64 = 6.0;
+pub(super) const SMALL_RADIUS_PX: f64 = 6.0;
 /// The centres of a disc and of its outline are no further apart than so many of their standard errors (measured: discs
 /// of phantoms, clean and hard, at most 1.6; round yellow paint, shaded and in strokes, up to 12. What a coarse codec
 /// makes of discs of 5 px at crf 34 is as much as 3.6: small ones are not asked).
