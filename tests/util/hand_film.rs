@@ -1,6 +1,6 @@
 //! Films of a finger whose skin is that of a real photograph, with joints of known angles.
 //!
-//! A strip of skin is cut out of a photograph of a hand and laid over four links, which turn rigidly about three joints;
+//! A strip of skin is cut out of a photograph of a hand and laid over four links, which turn about three joints;
 //! discs and blots of paint lie on it, in linear light, shaded as the skin is; another photograph is behind and drifts.
 //! Real are skin, its folds, its light and what is behind; motion, paint and camera are not.
 
@@ -272,7 +272,7 @@ impl Film {
         turn.sin().atan2(turn.cos()).to_degrees()
     }
 
-    /// The link that a place is on, how far along and across it, how far outside; of the skin's length how much is before.
+    /// The link that a place is on, how far along, across and outside of it, and how much skin lies before it.
     fn on_finger(pose: &[[[f64; 2]; 2]], place: [f64; 2]) -> (usize, [f64; 3], f64) {
         let (mut best, mut before) = ((0, [0.0, 0.0, f64::INFINITY], 0.0), 0.0);
         for (link, one) in pose.iter().enumerate() {

@@ -3,8 +3,8 @@
 use super::spots::SMALL_RADIUS_PX;
 use super::{Start, Surveyor};
 
-/// The outline of a disc has its radius but for this factor (measured: of phantoms, 4 to 11 px, 0.96 to 1.07; of stickers
-/// put onto photographs of real hands 0.97 to 1.06; of paint that covers thinly or runs into a fold, 1.35 to 2.0).
+/// The outline of a disc has its radius but for this factor (measured: of phantoms, 4 to 11 px, 0.96 to 1.07; of
+/// stickers put onto photographs of real hands 0.97 to 1.06; of thin paint or beside a fold, 1.35 to 2.0).
 const OUTLINE_FACTOR: f64 = 1.2;
 /// The standard error of a coordinate of a disc without any, in radii (measured on one of the skin's hue on such a
 /// photograph: 0.20; said 0.03 until then).
@@ -31,7 +31,7 @@ impl Start {
 }
 
 impl Surveyor<'_> {
-    /// What to say of discs that no outline parts from what is around, and their standard errors; stickers are believed.
+    /// What to say of discs that no outline parts from what is around, and their errors; stickers are believed.
     pub(super) fn unclear(&self, starts: &mut [Option<Start>]) -> Option<String> {
         let mut names = Vec::new();
         for (marker, start) in starts.iter_mut().enumerate() {
