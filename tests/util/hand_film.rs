@@ -339,10 +339,10 @@ impl Film {
         let mut picture = Picture::new(FORMAT);
         let byte = |value: f64| value.round().clamp(0.0, 255.0) as u8;
         picture.planes[0] = full.iter().map(|pixel| byte(pixel[0])).collect();
-        for plane in 1..3 {
+        for (plane, samples) in picture.planes.iter_mut().enumerate().skip(1) {
             let at = |x: usize, y: usize| full[y * width + x.min(width - 1)][plane];
             let column = |x: usize, y: usize| 0.5 * (at(x, y) + at(x, y + 1));
-            picture.planes[plane] = (0..width * height / 4)
+            *samples = (0..width * height / 4)
                 .map(|k| (2 * (k % (width / 2)), 2 * (k / (width / 2))))
                 .map(|(x, y)| byte(0.5 * column(x, y) + 0.25 * (column(x.saturating_sub(1), y) + column(x + 1, y))))
                 .collect();
