@@ -28,7 +28,7 @@ const SCALES: [Scale; 3] = [
     Scale { side_s: 1.5, apart_s: 1.5, least_part: 0.074 },
 ];
 /// The least squares of a step, each in standard errors of one value, summed over the photodiodes: of none, and more of
-/// each. Of 76 films of real nails that nobody pressed 18 had presses by the noise from frame to frame, none by these.
+/// each. Of 77 films of real nails that nobody pressed 18 had presses by the noise from frame to frame, none by these.
 /// Whether the step itself is large enough is for its course to say.
 const LEAST_SQUARES: [f64; 2] = [20.0, 4.0];
 /// Samples on each side, and their share of the frames: over a gap slow changes look like steps.
