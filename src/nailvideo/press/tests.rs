@@ -315,6 +315,7 @@ fn each_quick_tap_is_a_press() {
 fn what_an_encoder_leaves_for_a_while_is_no_press() {
     let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) / RATE_HZ).collect();
     // Of eight photodiodes so many are off by 4 for two seconds; their noise from frame to frame is small.
+    let still = vec![0.0; time_s.len()];
     let found = |changed: usize, sd: f64| {
         let one = |k: usize| {
             let mut normal = normals(k as u64);
@@ -322,9 +323,15 @@ fn what_an_encoder_leaves_for_a_while_is_no_press() {
             let values: Vec<f64> = time_s.iter().map(|&t| off(t) + 0.1 * normal()).collect();
             Trace { name: format!("P{}", k + 1), red: vec![0.0; 300], tint: vec![0.0; 300], values }
         };
-        find::presses(&time_s, &(0..8).map(one).collect::<Vec<_>>(), &[Some(sd); 8], 100.0).len()
+        let (traces, sd) = ((0..8).map(one).collect::<Vec<_>>(), [Some(sd); 8]);
+        rows(&Recording { time_s: &time_s, traces: &traces, sd: &sd, ends: &[], skin: &still, whole: 100.0 })
     };
-    assert_eq!([found(1, 0.1), found(1, 1.4), found(8, 1.4)], [1, 0, 1]);
+    assert_eq!([found(1, 0.1), found(1, 1.4), found(8, 1.4)].map(|rows| rows.len()), [16, 0, 16]);
+    let shallow = |sd: f64| {
+        let is_shallow = |row: &&Row| row.course.as_ref().is_err_and(|why| why.why.contains("6 standard errors"));
+        found(8, sd).iter().filter(is_shallow).count()
+    };
+    assert_eq!([0.6, 0.8].map(shallow), [0, 16]);
 }
 
 #[test]
