@@ -28,8 +28,8 @@ pub struct Browser {
 }
 
 impl Browser {
-    /// Opens a page in a window of this size, CSS pixels.
-    pub fn open(url: &str, [width, height]: [u32; 2]) -> Self {
+    /// A driver and its port; none where it ended before it had one, as happened once beside five others.
+    fn driver() -> Option<(Child, u16)> {
         let mut driver = Command::new("chromedriver")
             .arg("--port=0")
             .stdout(Stdio::piped())
@@ -41,11 +41,20 @@ impl Browser {
         let lines = said.by_ref().lines().map_while(Result::ok);
         let port =
             lines.filter_map(|line| line.trim_end_matches('.').rsplit_once("successfully on port ")?.1.parse().ok());
-        let port = { port }.next();
+        let Some(port) = { port }.next() else {
+            drop((driver.kill(), driver.wait()));
+            return None;
+        };
         // The pipe stays open while it runs.
         driver.stdout = Some(said.into_inner());
+        Some((driver, port))
+    }
+
+    /// Opens a page in a window of this size, CSS pixels.
+    pub fn open(url: &str, [width, height]: [u32; 2]) -> Self {
+        let (driver, port) = (0..3).find_map(|_| Self::driver()).expect("a port");
         let profile = tempfile::tempdir().expect("a temporary folder");
-        let mut browser = Self { driver, port: port.expect("a port"), session: String::new(), _profile: profile };
+        let mut browser = Self { driver, port, session: String::new(), _profile: profile };
         let data = format!("--user-data-dir={}", browser._profile.path().display());
         let size = format!("--window-size={width},{height}");
         let flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", &size, &data];

@@ -145,8 +145,8 @@ pub(in crate::nailvideo) struct Recording<'a> {
 }
 
 /// What to say where every press looks like a release: pressing makes the nail darker in green towards its proximal end
-/// and lighter towards its distal one (4.2). Shear may turn some of them: 6 of 10 of random forces on a phantom. Of most
-/// presses both ends have to be known: of 37 of random forces 7 had both, and looked so.
+/// and lighter towards its distal one (4.2). Shear may turn some of them: 6 of 10 of random forces on a phantom. Of
+/// half of the presses both ends have to be known: of 37 of random forces 7 had both, and looked so.
 pub(in crate::nailvideo) fn reversed(rows: &[Row]) -> Option<String> {
     let depth = |press: usize, place: &str| {
         rows.iter().find(|row| row.press == press && row.event == Event::Press && row.place == place)?.depth()
