@@ -103,9 +103,6 @@ impl Dataset {
         recordings: Vec<Recording>,
     ) -> Result<Self, DatasetFault> {
         let n = x.nrows();
-        let shape = |what, found, wanted| {
-            if found == wanted { Ok(()) } else { Err(DatasetFault::Shape { what, found, wanted }) }
-        };
         shape("columns of voltages", x.ncols(), inputs.len())?;
         shape("columns of targets", y.ncols(), targets.len())?;
         shape("rows of targets", y.nrows(), n)?;
@@ -136,9 +133,6 @@ impl Dataset {
     /// The same with moments whose targets are not known, from which [`Lags`](crate::Lags) read the past as well. Those
     /// of which a voltage is not finite are passed over there.
     pub fn with_past(self, past: Past) -> Result<Self, DatasetFault> {
-        let shape = |what, found, wanted| {
-            if found == wanted { Ok(()) } else { Err(DatasetFault::Shape { what, found, wanted }) }
-        };
         shape("times of the past", past.time_s.len(), past.before.len())?;
         shape("voltages of the past", past.x.len(), past.before.len() * self.inputs.len())?;
         let ascend = past.before.windows(2).all(|pair| pair[0] <= pair[1]);
@@ -285,6 +279,10 @@ impl Dataset {
             past,
         }
     }
+}
+
+fn shape(what: &'static str, found: usize, wanted: usize) -> Result<(), DatasetFault> {
+    if found == wanted { Ok(()) } else { Err(DatasetFault::Shape { what, found, wanted }) }
 }
 
 #[cfg(test)]
